@@ -1,0 +1,113 @@
+//! What can go wrong, said in one sentence each.
+
+/// Why a question could not be answered.
+///
+/// Every variant says what was wrong, the value that was given and what is allowed, and displays as
+/// one sentence without a full stop.
+///
+/// ```
+/// let error = unbiased::inversion::Exponential::new(-1.0).unwrap_err();
+/// assert_eq!(error.to_string(), "the rate λ must be positive and finite, not -1");
+/// ```
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A parameter lies outside its domain.
+    #[error("{name} must be {allowed}, not {value}")]
+    Parameter {
+        /// The parameter, as the worksheet calls it.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// The values that would have been accepted.
+        allowed: &'static str,
+    },
+    /// A count lies outside its domain.
+    #[error("{name} must be {allowed}, not {value}")]
+    Count {
+        /// What was counted.
+        name: &'static str,
+        /// The count given.
+        value: u64,
+        /// The counts that would have been accepted.
+        allowed: &'static str,
+    },
+    /// An estimator returned NaN or an infinity, which no mean can hold.
+    #[error("draw {draw} of block {block} is {value} (seed {seed}): an estimate needs finite draws")]
+    Draw {
+        /// The run's seed.
+        seed: u64,
+        /// The block of draws, counted from 0.
+        block: u64,
+        /// The draw within its block, counted from 0.
+        draw: u64,
+        /// The value it had.
+        value: f64,
+    },
+    /// Too few draws for the statistic asked for.
+    #[error("{statistic} needs at least {needed} draws, not {draws}")]
+    TooFewDraws {
+        /// What was asked for.
+        statistic: &'static str,
+        /// How many draws it takes.
+        needed: u64,
+        /// How many there are.
+        draws: u64,
+    },
+    /// The error asked for takes more draws than the run allows.
+    #[error("a std error of {std_error:e} takes about {needed:e} draws, more than the limit of {limit}")]
+    Budget {
+        /// The standard error asked for.
+        std_error: f64,
+        /// The draws that it would take, by the pilot run's variance.
+        needed: f64,
+        /// The run's limit.
+        limit: u64,
+    },
+    /// The function given is not a cumulative distribution function.
+    #[error("the function given is not a cdf: {reason}")]
+    NotACdf {
+        /// Where it fails, with the values there.
+        reason: String,
+    },
+    /// The worker threads could not be started.
+    #[error("{threads} threads could not be started: {reason}")]
+    Threads {
+        /// How many were asked for.
+        threads: usize,
+        /// What the system said.
+        reason: String,
+    },
+    /// A file or folder could not be written.
+    #[error("{path} could not be written: {reason}")]
+    Write {
+        /// The file or folder.
+        path: String,
+        /// What the system said.
+        reason: String,
+    },
+    /// A figure or page could not be drawn.
+    #[error("{what} could not be drawn: {reason}")]
+    Draft {
+        /// The figure, formula or page.
+        what: String,
+        /// What the drawing library said.
+        reason: String,
+    },
+    /// A command line was not understood.
+    #[error("{0}")]
+    Usage(String),
+}
+
+/// A `Result` with this crate's [`Error`].
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// `value` if it is `ok`, else the error that names it.
+pub(crate) fn require(name: &'static str, value: f64, ok: bool, allowed: &'static str) -> Result<f64> {
+    if ok { Ok(value) } else { Err(Error::Parameter { name, value, allowed }) }
+}
+
+/// The same for a count.
+pub(crate) fn require_count(name: &'static str, value: u64, ok: bool, allowed: &'static str) -> Result<u64> {
+    if ok { Ok(value) } else { Err(Error::Count { name, value, allowed }) }
+}

@@ -1,0 +1,18 @@
+//! Monte Carlo workbook.
+
+pub mod density;
+pub mod error;
+pub mod estimate;
+pub mod hemisphere;
+pub mod inversion;
+pub mod lambertian;
+pub mod rectangle;
+pub mod roulette;
+pub mod run;
+pub mod stream;
+
+pub use density::{Density, Ratio, ratio};
+pub use error::{Error, Result};
+pub use estimate::Estimate;
+pub use run::{Budget, Cost, Estimator, FromFn, Outcome, Progress, Run, estimate, from_fn};
+pub use stream::Stream;

@@ -1,0 +1,393 @@
+//! Running an estimator: draws in blocks, on all cores, with the same bits for any number of threads.
+//!
+//! Draws are cut into blocks of [`Estimator::draws_per_block`]. Block b draws from [`Stream::new`]`(seed, b)` and the
+//! blocks' estimates are merged in the order of b, so neither the number of threads nor their timing can
+//! be seen in the result. Memory does not grow with the number of draws.
+
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+
+use crate::error::{Error, Result, require, require_count};
+use crate::estimate::{Estimate, SLICE};
+use crate::stream::{Stream, mix};
+
+/// Something that can be drawn: each draw is one independent, unbiased value of the quantity estimated.
+///
+/// ```
+/// use unbiased::{Estimator, Stream};
+///
+/// /// 4·[x² + y² ≤ 1] for a random point of the unit square: an unbiased estimate of π.
+/// struct Quarter;
+///
+/// impl Estimator for Quarter {
+///     fn draw(&self, rng: &mut Stream) -> f64 {
+///         let (x, y) = (rng.uniform(), rng.uniform());
+///         if x * x + y * y <= 1.0 { 4.0 } else { 0.0 }
+///     }
+/// }
+///
+/// let estimate = unbiased::estimate(&Quarter, unbiased::Budget::Draws(100_000), 1)?;
+/// assert!(estimate.z(std::f64::consts::PI).unwrap().abs() < 5.0);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+pub trait Estimator: Sync {
+    /// One draw.
+    fn draw(&self, rng: &mut Stream) -> f64;
+
+    /// Fills `draws` with independent draws. An estimator that can make many side by side overrides this;
+    /// the values may then differ from those of repeated [`draw`](Self::draw), the distribution may not.
+    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
+        for draw in draws {
+            *draw = self.draw(rng);
+        }
+    }
+
+    /// How many draws share a stream: fewer where one draw is much work, so that a run still keeps all cores busy.
+    fn draws_per_block(&self) -> u64 {
+        1 << 14
+    }
+}
+
+impl<E: Estimator + ?Sized> Estimator for &E {
+    fn draw(&self, rng: &mut Stream) -> f64 {
+        (**self).draw(rng)
+    }
+
+    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
+        (**self).fill(rng, draws);
+    }
+
+    fn draws_per_block(&self) -> u64 {
+        (**self).draws_per_block()
+    }
+}
+
+impl<E: Estimator + ?Sized> Estimator for Box<E>
+where
+    Box<E>: Sync,
+{
+    fn draw(&self, rng: &mut Stream) -> f64 {
+        (**self).draw(rng)
+    }
+
+    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
+        (**self).fill(rng, draws);
+    }
+
+    fn draws_per_block(&self) -> u64 {
+        (**self).draws_per_block()
+    }
+}
+
+/// An estimator whose draw is what a closure returns.
+///
+/// ```
+/// use unbiased::{Budget, estimate, from_fn};
+///
+/// let square = from_fn(|rng| rng.uniform().powi(2)); // E[U²] = 1/3
+/// let estimate = estimate(&square, Budget::Draws(10_000), 7)?;
+/// assert!(estimate.z(1.0 / 3.0).unwrap().abs() < 5.0);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+pub fn from_fn<F: Fn(&mut Stream) -> f64 + Sync>(f: F) -> FromFn<F> {
+    FromFn(f)
+}
+
+/// An estimator made of a closure; see [`from_fn`].
+#[derive(Debug, Clone, Copy)]
+pub struct FromFn<F>(F);
+
+impl<F: Fn(&mut Stream) -> f64 + Sync> Estimator for FromFn<F> {
+    #[inline]
+    fn draw(&self, rng: &mut Stream) -> f64 {
+        (self.0)(rng)
+    }
+}
+
+/// When a run is over.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Budget {
+    /// After this many draws.
+    Draws(u64),
+    /// After the draws that, by a pilot run's variance, bring the std error to this. The pilot has a stream of its own
+    /// and is discarded, so the result stays exactly unbiased.
+    StdError(f64),
+    /// The same for the std error divided by the mean.
+    RelativeError(f64),
+    /// After the first batch of blocks that ends past this time. The draws then depend on the machine;
+    /// `Draws` with the number that came of it repeats the result.
+    Time(Duration),
+}
+
+/// The estimate after `budget`, on all cores. The same budget of draws and seed give the same bits for any number of threads.
+///
+/// [`Run`] takes more options and tells more.
+///
+/// # Errors
+/// If the budget is empty or out of reach, or a draw is NaN or infinite.
+///
+/// ```
+/// use unbiased::{Budget, estimate, inversion::Exponential};
+///
+/// let exponential = Exponential::new(0.37)?;
+/// let estimate = estimate(&exponential, Budget::Draws(1_000_000), 1)?;
+/// assert!(estimate.z(1.0 / 0.37).unwrap().abs() < 5.0);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+pub fn estimate(estimator: &(impl Estimator + ?Sized), budget: Budget, seed: u64) -> Result<Estimate> {
+    Ok(Run::new(seed).estimate(estimator, budget)?.estimate)
+}
+
+/// What a run took, in units that do not depend on the machine.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// Random numbers (words of 64 bits) that the streams gave.
+    pub random_numbers: u64,
+    /// Evaluations of the integrand (rays, path vertices) that the estimator counted.
+    pub evaluations: u64,
+}
+
+/// What came of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outcome {
+    /// The estimate.
+    pub estimate: Estimate,
+    /// The seed it was made with.
+    pub seed: u64,
+    /// What it cost, the pilot included.
+    pub cost: Cost,
+    /// How long it took, the pilot included.
+    pub elapsed: Duration,
+    /// The pilot run that fixed the number of draws, if the budget asked for an error.
+    pub pilot: Option<Estimate>,
+}
+
+impl Outcome {
+    /// Whether the pilot run never varied, so that its error bar of 0 decided the number of draws: either the estimator has
+    /// no variance, or the pilot missed all of it.
+    pub fn pilot_never_varied(&self) -> bool {
+        self.pilot.is_some_and(|pilot| pilot.std_error() == Some(0.0))
+    }
+}
+
+/// How far a run has come: draws done, and the total where it is known.
+pub type Progress<'a> = dyn Fn(u64, Option<u64>) + 'a;
+
+/// A run with its options.
+///
+/// ```
+/// use unbiased::{Budget, Run, from_fn};
+///
+/// let outcome = Run::new(1).threads(1).estimate(&from_fn(|rng| rng.uniform()), Budget::Draws(1000))?;
+/// assert_eq!(outcome.cost.random_numbers, 1000);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+#[derive(Clone, Copy)]
+pub struct Run<'a> {
+    seed: u64,
+    threads: Option<usize>,
+    max_draws: u64,
+    progress: Option<&'a Progress<'a>>,
+}
+
+impl<'a> Run<'a> {
+    /// A run with this seed, on all cores, of at most 10⁹ draws where the budget names an error.
+    pub fn new(seed: u64) -> Self {
+        Self { seed, threads: None, max_draws: 1_000_000_000, progress: None }
+    }
+
+    /// Uses this many threads instead of one a core; the result is the same.
+    pub fn threads(mut self, threads: usize) -> Self {
+        self.threads = Some(threads);
+        self
+    }
+
+    /// Allows this many draws where the budget names an error.
+    pub fn max_draws(mut self, max_draws: u64) -> Self {
+        self.max_draws = max_draws;
+        self
+    }
+
+    /// Calls `progress` between batches of blocks.
+    pub fn progress(mut self, progress: &'a Progress<'a>) -> Self {
+        self.progress = Some(progress);
+        self
+    }
+
+    /// Runs `estimator` until `budget` is spent.
+    ///
+    /// # Errors
+    /// If the budget is empty or out of reach, the threads cannot be started, or a draw is NaN or infinite.
+    pub fn estimate(&self, estimator: &(impl Estimator + ?Sized), budget: Budget) -> Result<Outcome> {
+        let start = Instant::now();
+        let mut blocks = Blocks { estimator, pool: self.pool()?, cost: Cost::default() };
+        let (estimate, pilot) = match budget {
+            Budget::Draws(draws) => {
+                require_count("the number of draws", draws, draws > 0, "positive")?;
+                (self.run_draws(&mut blocks, draws)?, None)
+            }
+            Budget::Time(time) => {
+                require("the time in seconds", time.as_secs_f64(), !time.is_zero(), "positive")?;
+                (self.run_time(&mut blocks, start, time)?, None)
+            }
+            Budget::StdError(target) => {
+                require("the std error", target, target > 0.0, "positive")?;
+                let pilot = self.pilot(&mut blocks, |_, std_error| std_error > 0.0)?;
+                let draws = self.needed(&pilot, target)?;
+                (self.run_draws(&mut blocks, draws)?, Some(pilot))
+            }
+            Budget::RelativeError(target) => {
+                require("the relative error", target, target > 0.0, "positive")?;
+                let pilot = self
+                    .pilot(&mut blocks, |mean, std_error| std_error > 0.0 && std_error < 0.25 * mean.abs())?;
+                let draws = self.needed(&pilot, target * pilot.mean().abs())?;
+                (self.run_draws(&mut blocks, draws)?, Some(pilot))
+            }
+        };
+        Ok(Outcome { estimate, seed: self.seed, cost: blocks.cost, elapsed: start.elapsed(), pilot })
+    }
+
+    fn pool(&self) -> Result<Option<rayon::ThreadPool>> {
+        let Some(threads) = self.threads else { return Ok(None) };
+        require_count("the number of threads", threads as u64, threads > 0, "positive")?;
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map(Some)
+            .map_err(|error| Error::Threads { threads, reason: error.to_string() })
+    }
+
+    fn run_draws<E: Estimator + ?Sized>(&self, blocks: &mut Blocks<'_, E>, draws: u64) -> Result<Estimate> {
+        let mut estimate = Estimate::new();
+        while estimate.draws() < draws {
+            blocks.extend(&mut estimate, self.seed, BATCH, draws)?;
+            self.report(&estimate, Some(draws));
+        }
+        Ok(estimate)
+    }
+
+    fn run_time<E: Estimator + ?Sized>(
+        &self,
+        blocks: &mut Blocks<'_, E>,
+        start: Instant,
+        time: Duration,
+    ) -> Result<Estimate> {
+        let mut estimate = Estimate::new();
+        let mut batch = 1;
+        while start.elapsed() < time {
+            let batch_start = Instant::now();
+            blocks.extend(&mut estimate, self.seed, batch, u64::MAX)?;
+            self.report(&estimate, None);
+            // batches short enough to overrun by a few per cent, long enough to keep all cores busy
+            if batch < BATCH && batch_start.elapsed() < time / 32 {
+                batch *= 2;
+            }
+        }
+        Ok(estimate)
+    }
+
+    /// Draws from a stream of its own until mean and std error are `enough`, doubling up to the limit on draws.
+    fn pilot<E: Estimator + ?Sized>(
+        &self,
+        blocks: &mut Blocks<'_, E>,
+        enough: impl Fn(f64, f64) -> bool,
+    ) -> Result<Estimate> {
+        let seed = mix(self.seed ^ PILOT);
+        let mut pilot = Estimate::new();
+        let mut batch = PILOT_BLOCKS;
+        loop {
+            blocks.extend(&mut pilot, seed, batch, self.max_draws.max(2))?;
+            let std_error = pilot.std_error().unwrap_or(0.0);
+            if enough(pilot.mean(), std_error) || pilot.draws() >= self.max_draws {
+                return Ok(pilot);
+            }
+            batch = pilot.draws() / blocks.estimator.draws_per_block().max(1);
+        }
+    }
+
+    /// The draws that bring the std error down to `target`, by the pilot's variance.
+    fn needed(&self, pilot: &Estimate, target: f64) -> Result<u64> {
+        let reached = pilot.std_error().unwrap_or(0.0);
+        if reached == 0.0 {
+            return Ok(pilot.draws());
+        }
+        let needed = (pilot.draws() as f64 * (reached / target).powi(2)).ceil().max(2.0);
+        if needed <= self.max_draws as f64 {
+            Ok(needed as u64)
+        } else {
+            Err(Error::Budget { std_error: target, needed, limit: self.max_draws })
+        }
+    }
+
+    fn report(&self, estimate: &Estimate, total: Option<u64>) {
+        if let Some(progress) = self.progress {
+            progress(estimate.draws(), total);
+        }
+    }
+}
+
+/// Blocks between two looks at the clock or the progress bar.
+const BATCH: u64 = 1024;
+
+/// Blocks of a pilot run: its std error is known to about 10 %.
+const PILOT_BLOCKS: u64 = 64;
+
+/// Sets the pilot's seed apart from the run's.
+const PILOT: u64 = 0x7069_6c6f_7420_7275;
+
+/// The blocks of one estimator's run, and what they have cost so far.
+struct Blocks<'e, E: ?Sized> {
+    estimator: &'e E,
+    pool: Option<rayon::ThreadPool>,
+    cost: Cost,
+}
+
+impl<E: Estimator + ?Sized> Blocks<'_, E> {
+    /// Takes the next `batch` blocks into `estimate`, but no more than `limit` draws in all.
+    fn extend(&mut self, estimate: &mut Estimate, seed: u64, batch: u64, limit: u64) -> Result<()> {
+        let size = self.estimator.draws_per_block().max(1);
+        let first = estimate.draws() / size;
+        let last = first.saturating_add(batch).min(limit.div_ceil(size));
+        let estimator = self.estimator;
+        let run = || -> Vec<_> {
+            (first..last)
+                .into_par_iter()
+                .map(|block| one_block(estimator, seed, block, size.min(limit - block * size)))
+                .collect()
+        };
+        let results = match &self.pool {
+            Some(pool) => pool.install(run),
+            None => run(),
+        };
+        for result in results {
+            let (of_block, cost) = result?;
+            estimate.merge(&of_block);
+            self.cost.random_numbers += cost.random_numbers;
+            self.cost.evaluations += cost.evaluations;
+        }
+        Ok(())
+    }
+}
+
+fn one_block(
+    estimator: &(impl Estimator + ?Sized),
+    seed: u64,
+    block: u64,
+    draws: u64,
+) -> Result<(Estimate, Cost)> {
+    let mut rng = Stream::new(seed, block);
+    let mut estimate = Estimate::new();
+    let mut buffer = [0.0; SLICE];
+    while estimate.draws() < draws {
+        let slice = &mut buffer[..(draws - estimate.draws()).min(SLICE as u64) as usize];
+        estimator.fill(&mut rng, slice);
+        if let Some(draw) = slice.iter().position(|draw| !draw.is_finite()) {
+            let value = slice[draw];
+            return Err(Error::Draw { seed, block, draw: estimate.draws() + draw as u64, value });
+        }
+        estimate.extend_from_slice(slice);
+    }
+    let cost = Cost { random_numbers: rng.random_numbers(), evaluations: rng.evaluations() };
+    Ok((estimate, cost))
+}

@@ -1,0 +1,100 @@
+//! Where random numbers come from: one independent stream for every (seed, block).
+
+use std::convert::Infallible;
+
+use rand::{SeedableRng, TryRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// A stream of random numbers: Xoshiro256++ (Blackman & Vigna 2019), started from (seed, block).
+///
+/// The same pair gives the same numbers on every machine and in every release that does not say
+/// otherwise in the changelog. Seed and block are hashed together into the 256 bits of the generator's state,
+/// so neighbouring seeds and neighbouring blocks share nothing.
+///
+/// It is an ordinary [`rand::Rng`], so every distribution of rand's can draw from it, and it counts
+/// what it gave, so that an estimator's cost is known.
+///
+/// ```
+/// use unbiased::Stream;
+///
+/// let mut rng = Stream::new(1, 0);
+/// let u = rng.uniform();
+/// assert!((0.0..1.0).contains(&u));
+/// assert_eq!(rng.random_numbers(), 1);
+/// assert_ne!(u, Stream::new(2, 0).uniform());
+/// ```
+#[derive(Debug, Clone)]
+pub struct Stream {
+    rng: Xoshiro256PlusPlus,
+    random_numbers: u64,
+    evaluations: u64,
+}
+
+impl Stream {
+    /// The stream of `block` in the run with `seed`.
+    pub fn new(seed: u64, block: u64) -> Self {
+        let mut state = [0; 32];
+        for (word, bytes) in state.as_chunks_mut::<8>().0.iter_mut().enumerate() {
+            let salt = GOLDEN.wrapping_mul(word as u64 + 1);
+            let mixed = mix(seed.wrapping_add(salt)).wrapping_add(mix(block ^ !salt));
+            *bytes = mix(mixed).to_le_bytes();
+        }
+        Self { rng: Xoshiro256PlusPlus::from_seed(state), random_numbers: 0, evaluations: 0 }
+    }
+
+    /// A uniform number on the grid k·2⁻⁵³ in [0, 1): never 1, and 0 with probability 2⁻⁵³.
+    ///
+    /// 1 − u is exact on this grid and lies in (0, 1].
+    #[inline]
+    pub fn uniform(&mut self) -> f64 {
+        const STEP: f64 = 1.0 / (1u64 << 53) as f64;
+        let Ok(bits) = self.try_next_u64();
+        (bits >> 11) as f64 * STEP
+    }
+
+    /// How many random numbers (words of 64 bits) were given.
+    pub fn random_numbers(&self) -> u64 {
+        self.random_numbers
+    }
+
+    /// Counts `n` evaluations of an integrand (or rays, or path vertices): the work that a draw took.
+    #[inline]
+    pub fn count_evaluations(&mut self, n: u64) {
+        self.evaluations = self.evaluations.wrapping_add(n);
+    }
+
+    /// How many evaluations the estimators that drew from here counted.
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations
+    }
+}
+
+impl TryRng for Stream {
+    type Error = Infallible;
+
+    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
+        let Ok(bits) = self.try_next_u64();
+        Ok((bits >> 32) as u32)
+    }
+
+    #[inline]
+    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
+        self.random_numbers = self.random_numbers.wrapping_add(1);
+        self.rng.try_next_u64()
+    }
+
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
+        self.random_numbers = self.random_numbers.wrapping_add(bytes.len().div_ceil(8) as u64);
+        self.rng.try_fill_bytes(bytes)
+    }
+}
+
+/// 2⁶⁴/φ, the increment of SplitMix64.
+const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// SplitMix64's finaliser (Stafford's mix 13): a bijection in which every input bit moves half of the output's.
+pub(crate) fn mix(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
