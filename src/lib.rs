@@ -3,6 +3,8 @@
 pub mod density;
 pub mod error;
 pub mod estimate;
+#[cfg(feature = "workbook")]
+pub mod figure;
 pub mod hemisphere;
 pub mod inversion;
 pub mod lambertian;
@@ -10,6 +12,8 @@ pub mod rectangle;
 pub mod roulette;
 pub mod run;
 pub mod stream;
+#[cfg(feature = "workbook")]
+pub mod workbook;
 
 pub use density::{Density, Ratio, ratio};
 pub use error::{Error, Result};
