@@ -107,7 +107,7 @@ pub fn empirical_cdf(exponential: &Exponential, draws: usize, seed: u64) -> Resu
         )
         .line("empirical cdf", Ink::Blue, steps)
         .curve("F", Ink::Black, |x| exponential.cdf(x))
-        .text(Ink::Black, [2.1 / rate, 0.62], Side::Right, "thin line: F(x) = 1 − e^(−λx)")
+        .text(Ink::Black, [2.1 / rate, 0.62], Side::Right, "thin line: F(x) = 1 − exp(−λx)")
         .text(Ink::Blue, [2.1 / rate, 0.52], Side::Right, &format!("steps: samples, seed {seed}"))
         .text(Ink::Blue, [2.1 / rate, 0.42], Side::Right, &format!("band: ±{reach:.3}, 95 % for all x"));
     Plot {
@@ -154,7 +154,7 @@ pub fn tails(exponential: &Exponential, draws: usize, seed: u64) -> Result<Figur
         .upright("last f32 sample", Ink::Vermilion, end32)
         .upright("last f64 sample", Ink::Blue, end64)
         .marks("measured", Ink::Green, Marker::Ring, measured)
-        .text(Ink::Black, [25.0, 1e-10], Side::Right, "e^(−λx)")
+        .text(Ink::Black, [25.0, 1e-10], Side::Right, "exp(−λx)")
         .text(Ink::Vermilion, [end32, 1e-14], Side::Left, "f32 ends at")
         .text(Ink::Vermilion, [end32, 1e-15], Side::Left, "24 ln 2 = 16.636")
         .text(Ink::Blue, [end64, 1e-3], Side::Left, "f64 ends at")

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::figure::Edition;
 
 /// The whole page: no script, nothing loaded from elsewhere.
-pub(super) fn page(answered: &[(&Question, Vec<Answer>)], options: &Options) -> Result<String> {
+pub(super) fn page(answered: &[(&'static Question, Vec<Answer>)], options: &Options) -> Result<String> {
     let student = options.edition == Edition::Student;
     let title = "Monte Carlo and global illumination: the worksheet";
     let mut articles = Vec::new();
@@ -54,7 +54,7 @@ pub(super) fn page(answered: &[(&Question, Vec<Answer>)], options: &Options) -> 
 }
 
 /// The heading of a section, at its first question.
-fn section_heading(answered: &[(&Question, Vec<Answer>)], index: usize) -> Option<String> {
+fn section_heading(answered: &[(&'static Question, Vec<Answer>)], index: usize) -> Option<String> {
     let section = |index: usize| answered.get(index).and_then(|(question, _)| question.id.split('.').next());
     let number = section(index)?;
     if index > 0 && section(index - 1) == Some(number) {
@@ -71,7 +71,8 @@ fn section_heading(answered: &[(&Question, Vec<Answer>)], index: usize) -> Optio
     Some(format!("{number} {name}"))
 }
 
-fn article(question: &Question, answers: &[Answer], options: &Options) -> Result<Markup> {
+fn article(question: &'static Question, answers: &[Answer], options: &Options) -> Result<Markup> {
+    let options = options.for_question(question);
     let edition = options.edition;
     let formulas = question.latex.iter().map(|latex| mathml(latex)).collect::<Result<Vec<_>>>()?;
     let answers: Vec<&Answer> = answers.iter().filter(|answer| shown(answer, edition)).collect();
@@ -90,8 +91,10 @@ fn article(question: &Question, answers: &[Answer], options: &Options) -> Result
                     @if let Some(sentence) = answer.sentence() { p { (sentence) } }
                 }
             }
-            @for figure in figures {
-                figure { (PreEscaped(figure.svg())) figcaption { (figure.title()) } }
+            div.figures {
+                @for figure in figures {
+                    figure { (PreEscaped(figure.svg())) figcaption { (figure.title()) } }
+                }
             }
             @if edition == Edition::Student {
                 div.space {}
@@ -114,7 +117,7 @@ fn article(question: &Question, answers: &[Answer], options: &Options) -> Result
 fn numbers(answers: &[&Answer]) -> Markup {
     html! {
         div.wide { table {
-            thead { tr { th { "" } th { "what" } th { "truth" } th { "estimate" } th { "z" } th { "draws" } } }
+            thead { tr { th { "" } th { "what" } th { "truth" } th { "estimate ± 95 %" } th { "z" } th { "draws" } } }
             tbody {
                 @for answer in answers {
                     @if answer.found().is_some() || answer.exact().is_some() {
@@ -127,15 +130,25 @@ fn numbers(answers: &[&Answer]) -> Markup {
                                 @if answer.estimate().is_some() { (print::interval(answer)) }
                                 @else if let Some(value) = answer.found() { (shortened(value)) }
                             }
-                            td { @if let Some(z) = answer.z() { (format!("{z:.2}")) }
+                            td { @if let Some(z) = answer.z() { (format!("{z:.2}").replace('-', "−")) }
                                 @match answer.agrees() { Some(true) => " ✓", Some(false) => " ✗", None => "" } }
-                            td { @if let Some(estimate) = answer.estimate() { (estimate.draws()) } }
+                            td { @if let Some(estimate) = answer.estimate() { (grouped(estimate.draws())) } }
                         }
                     }
                 }
             }
         } }
     }
+}
+
+/// Digits in threes.
+fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let thirds = digits.bytes().enumerate().map(|(i, digit)| {
+        let gap = if i > 0 && (digits.len() - i) % 3 == 0 { "\u{202f}" } else { "" };
+        format!("{gap}{}", char::from(digit))
+    });
+    thirds.collect()
 }
 
 /// Ten significant digits at most, trailing zeros left out.
@@ -164,13 +177,13 @@ fn mathml(latex: &str) -> Result<String> {
 
 const STYLE: &str = "
 :root { color-scheme: light; }
-body { font: 1rem/1.5 system-ui, 'DejaVu Sans', sans-serif; color: #222; background: #fff; margin: 0 auto; max-width: 46rem; padding: 1rem; }
+body { font: 1rem/1.5 system-ui, 'DejaVu Sans', sans-serif; color: #222; background: #fff; margin: 0 auto; max-width: 44rem; padding: 1rem; }
 h1 { font-size: 1.6rem; line-height: 1.2; } h2 { font-size: 1.3rem; border-bottom: 1px solid #bbb; margin-top: 2.5rem; }
 h3 { font-size: 1.05rem; margin-bottom: .3rem; } h4 { font-size: .95rem; margin-bottom: .3rem; }
 nav { line-height: 2; } nav a { display: inline-block; padding: 0 .4rem; color: #005a8c; }
 .statement { font-style: italic; }
 .formula { overflow-x: auto; margin: .6rem 0; } math { font-size: 1.1rem; }
-figure { margin: 1rem 0; } figure svg { max-width: 100%; height: auto; } figcaption { font-size: .85rem; color: #444; }
+.figures { display: flex; flex-wrap: wrap; gap: 0 1rem; } figure { margin: 1rem 0; max-width: 100%; flex: 0 1 auto; } figure svg { max-width: 100%; height: auto; } figcaption { font-size: .85rem; color: #444; max-width: 85mm; }
 .wide { overflow-x: auto; } table { border-collapse: collapse; font-size: .85rem; }
 th, td { text-align: left; padding: .2rem .6rem .2rem 0; border-bottom: 1px solid #ddd; vertical-align: top; }
 td { font-variant-numeric: tabular-nums; } tr.demonstration td { color: #666; }

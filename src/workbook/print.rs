@@ -107,7 +107,7 @@ fn solution(out: &mut impl Write, answer: &Answer) -> io::Result<()> {
         writeln!(out, "        truth    {truth}")?;
     }
     if let Some(estimate) = answer.estimate() {
-        write!(out, "        estimate {}", interval(answer))?;
+        write!(out, "        estimate {} (95 %)", interval(answer))?;
         if let Some(z) = answer.z() {
             write!(out, "   z = {z:.2}")?;
         }
@@ -132,7 +132,7 @@ fn solution(out: &mut impl Write, answer: &Answer) -> io::Result<()> {
     Ok(())
 }
 
-/// `mean ± half-width (95 %)`
+/// `mean ± half-width` of the 95 % interval
 pub(super) fn interval(answer: &Answer) -> String {
     let Some(estimate) = answer.estimate() else { return String::new() };
     match estimate.confidence_interval(0.95) {
@@ -141,9 +141,9 @@ pub(super) fn interval(answer: &Answer) -> String {
             let places =
                 if reach > 0.0 { (1.0 - reach.log10().floor()).clamp(0.0, 17.0) as usize } else { 6 };
             if (1e-12..1e12).contains(&reach) && estimate.mean().abs() < 1e15 || reach == 0.0 {
-                format!("{:.places$} ± {reach:.places$} (95 %)", estimate.mean())
+                format!("{:.places$} ± {reach:.places$}", estimate.mean())
             } else {
-                format!("{:e} ± {reach:.1e} (95 %)", estimate.mean())
+                format!("{:e} ± {reach:.1e}", estimate.mean())
             }
         }
         Err(_) => estimate.to_string(),

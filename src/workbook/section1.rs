@@ -27,7 +27,7 @@ pub(super) const QUESTIONS: &[Question] = &[
             Wrong { answer: "ln(1 − U)/λ", slip: "the sign forgotten: all samples are negative" },
             Wrong {
                 answer: "−log₁₀(1 − U)/λ",
-                slip: "the wrong logarithm: every sample is 0.434 times too large a value",
+                slip: "the wrong logarithm: every sample is 0.434 times what it should be",
             },
             Wrong { answer: "λ e^(−λU)", slip: "U put into the density instead of the inverse cdf" },
         ],
