@@ -435,7 +435,7 @@ proptest! {
     /// Any table of jumps makes a cdf; its inverse finds the jump, whatever the support.
     #[test]
     fn any_staircase_is_inverted(
-        steps in prop::collection::vec((-1e3..1e3f64, 0.01..1.0f64), 1..12),
+        mut steps in prop::collection::vec((-1e3..1e3f64, 0.01..1.0f64), 1..12),
         u in 0.0..1.0f64,
     ) {
             steps.sort_by(|a, b| a.0.total_cmp(&b.0));
