@@ -67,6 +67,7 @@ impl Figure {
     /// # Errors
     /// If the folder or a file cannot be written.
     pub fn save(&self, folder: &Path) -> Result<Vec<PathBuf>> {
+        #[cfg_attr(not(any(feature = "png", feature = "pdf")), expect(unused_mut))]
         let mut files = vec![("svg", self.svg.clone().into_bytes()), ("csv", self.csv.clone().into_bytes())];
         #[cfg(feature = "png")]
         files.push(("png", self.png(300.0)?));

@@ -107,29 +107,29 @@ pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
     ended(question(id).and_then(|question| {
         let Request::Run(options) = Request::read(&[question])? else { return print::help(&[question]) };
         let options = options.for_question(question);
-        options.prepare_out()?;
-        let answers = answer(&options)?;
-        print::answers(question, &answers, &options)
+        options.with_out(|| print::answers(question, &answer(&options)?, &options))
     }))
 }
 
 /// The worksheet's `main`: answers all these questions, and writes `index.html` with all of it.
 pub fn worksheet(answers: &[(&str, AnswerFn)]) -> ExitCode {
-    ended((|| {
-        let asked = answers.iter().map(|(id, _)| question(id)).collect::<Result<Vec<_>>>()?;
-        let Request::Run(options) = Request::read(&asked)? else { return print::help(&asked) };
-        options.prepare_out()?;
-        let mut answered = Vec::new();
-        for (question, (_, answer)) in asked.iter().zip(answers) {
-            let options = options.for_question(question);
-            let rows = answer(&options)?;
-            print::answers(question, &rows, &options)?;
-            answered.push((*question, rows));
-        }
-        let path = options.out.join("index.html");
-        write_whole(&path, page::page(&answered, &options)?.as_bytes())?;
-        print::page(&path, &options)
-    })())
+    let asked = answers.iter().map(|(id, answer)| Ok((question(id)?, *answer))).collect::<Result<Vec<_>>>();
+    ended(asked.and_then(|asked| {
+        let questions: Vec<_> = asked.iter().map(|(question, _)| *question).collect();
+        let Request::Run(options) = Request::read(&questions)? else { return print::help(&questions) };
+        options.with_out(|| {
+            let mut answered = Vec::new();
+            for (question, answer) in &asked {
+                let options = options.for_question(question);
+                let rows = answer(&options)?;
+                print::answers(question, &rows, &options)?;
+                answered.push((*question, rows));
+            }
+            let path = options.out.join("index.html");
+            write_whole(&path, page::page(&answered, &options)?.as_bytes())?;
+            print::page(&path, &options)
+        })
+    }))
 }
 
 /// 0 for success, 2 for bad arguments, 1 for a failed run; the reason on standard error, in one sentence.

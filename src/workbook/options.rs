@@ -172,13 +172,20 @@ impl Options {
         outcome
     }
 
-    /// Makes the folder for figures and pages, before anything is computed for it.
-    pub(super) fn prepare_out(&self) -> Result<()> {
-        let failed = |error: std::io::Error| Error::Write {
+    /// Does what needs the folder for figures and pages: the folder is made first, before anything is computed for it, and goes
+    /// away again if nothing came of it.
+    pub(super) fn with_out(&self, work: impl FnOnce() -> Result<()>) -> Result<()> {
+        let was_there = self.out.exists();
+        std::fs::create_dir_all(&self.out).map_err(|error| Error::Write {
             path: self.out.display().to_string(),
             reason: error.to_string(),
-        };
-        std::fs::create_dir_all(&self.out).map_err(failed)
+        })?;
+        work().inspect_err(|_| {
+            if !was_there {
+                // fails, as it should, if there is something in it
+                let _ = std::fs::remove_dir(&self.out);
+            }
+        })
     }
 
     /// The command that repeats this answer.
