@@ -166,3 +166,42 @@ fn six_digits(x: f64) -> String {
         text
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_six_digits() {
+        for (x, shown) in [
+            (0.0, "0"),
+            (1.0, "1"),
+            (-0.25, "-0.25"),
+            (1.386_294_361_119_890_6, "1.38629"),
+            (123_456_789.0, "123457000"),
+            (0.000_123_456_789, "0.000123457"),
+            (1.234_567_89e-9, "1.23457e-9"),
+            (9.999_999_9e20, "1.00000e21"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(six_digits(x), shown);
+        }
+    }
+
+    #[test]
+    fn a_file_appears_whole_or_not_at_all() {
+        let folder = std::env::temp_dir().join(format!("unbiased-{}", std::process::id()));
+        let path = folder.join("deep").join("file.txt");
+        write_whole(&path, b"whole").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"whole");
+        // a folder in the file's place
+        let taken = folder.join("taken");
+        fs::create_dir_all(taken.join("inside")).unwrap();
+        assert!(matches!(write_whole(&taken, b"x"), Err(Error::Write { .. })));
+        let mut left: Vec<_> =
+            fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        left.sort();
+        assert_eq!(left, ["deep", "taken"]);
+        fs::remove_dir_all(&folder).unwrap();
+    }
+}

@@ -380,3 +380,33 @@ fn quoted(field: &str) -> String {
         field.into()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_inside() {
+        let labels = |axis: Axis| axis.ticks.into_iter().map(|(_, label)| label).collect::<Vec<_>>();
+        assert_eq!(labels(Axis::linear("x", 0.0, 5.0)), ["0", "1", "2", "3", "4", "5"]);
+        assert_eq!(labels(Axis::linear("x", -1.0, 1.05)), ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
+        assert_eq!(labels(Axis::linear("x", 0.0, 40.0)), ["0", "10", "20", "30", "40"]);
+        assert_eq!(labels(Axis::log("x", 1.0, 1e4)), ["1", "10", "10²", "10³", "10⁴"]);
+        assert_eq!(labels(Axis::log("x", 0.002, 50.0)), ["10⁻²", "10⁻¹", "1", "10"]);
+        assert_eq!(power_of_ten(-18), "10⁻¹⁸");
+    }
+
+    #[test]
+    fn places_run_from_0_to_1() {
+        let linear = Axis::linear("x", -2.0, 2.0);
+        assert_eq!([linear.place(-2.0), linear.place(0.0), linear.place(2.0)], [0.0, 0.5, 1.0]);
+        let log = Axis::log("x", 1.0, 100.0);
+        assert!((log.place(10.0) - 0.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn csv_fields_with_commas_are_quoted() {
+        assert_eq!(quoted("a"), "a");
+        assert_eq!(quoted("a, \"b\""), "\"a, \"\"b\"\"\"");
+    }
+}

@@ -357,3 +357,19 @@ fn finish(plot: &Plot, name: &str, svg: &str) -> String {
 fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn segments_are_clipped_to_the_unit_square() {
+        assert_eq!(clip_segment([0.2, 0.2], [0.8, 0.4]), Some([[0.2, 0.2], [0.8, 0.4]]));
+        assert_eq!(clip_segment([-1.0, 0.5], [3.0, 0.5]), Some([[0.0, 0.5], [1.0, 0.5]]));
+        assert_eq!(clip_segment([0.5, 0.5], [0.5, 2.5]), Some([[0.5, 0.5], [0.5, 1.0]]));
+        assert_eq!(clip_segment([2.0, 0.0], [2.0, 1.0]), None);
+        assert_eq!(clip_segment([-1.0, 0.9], [0.5, 2.4]), None);
+        assert_eq!(clip_segment([0.5, 0.5], [f64::INFINITY, 0.5]), None);
+        assert_eq!(clip_segment([0.5, 0.5], [0.5, f64::NAN]), None);
+    }
+}
