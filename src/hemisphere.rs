@@ -11,7 +11,8 @@ use crate::error::{Result, require};
 
 /// A direction: a vector of unit length (to 2 ulp) whose z axis is the surface's normal.
 ///
-/// θ is its angle to the normal and φ the one around it, from the x axis towards y. Directions with cos θ < 0 point below the horizon, into the surface.
+/// θ is its angle to the normal and φ the one around it, from the x axis towards y. Directions with cos θ < 0
+/// point below the horizon, into the surface.
 ///
 /// ```
 /// use unbiased::hemisphere::Direction;
@@ -47,7 +48,8 @@ impl Direction {
 
     /// The direction with this cos θ and φ (in radians, any number of turns).
     ///
-    /// Near the normal `cos_theta` itself holds few digits of θ; [`Hemisphere::direction_of`] does not go through it.
+    /// Near the normal `cos_theta` itself holds few digits of θ; [`Hemisphere::direction_of`] does not go
+    /// through it.
     ///
     /// # Errors
     /// If cos θ is not in \[−1, 1\], or φ not finite.
@@ -98,22 +100,22 @@ impl From<Direction> for DVec3 {
     }
 }
 
-/// The densities of section 3 over the directions above a surface, in 1/sr. Both are drawn by inversion from two uniform
-/// numbers (U, V), with φ = 2πV:
+/// The densities of section 3 over the directions above a surface, in 1/sr. Both are drawn by inversion from
+/// two uniform numbers (U, V), with φ = 2πV:
 ///
 /// | | p(ω) | cos θ | sin θ | P(cos θ ≤ c) | worksheet |
 /// |---|---|---|---|---|---|
 /// | `Uniform` | 1/(2π) | 1 − U | √(U(2 − U)) | c | 3.4 |
 /// | `Cosine` | cos θ/π | √(1 − U) | √U | c² | 3.5 |
 ///
-/// Uniform: the area of a sphere between two heights is in proportion to their distance (Archimedes), so cos θ is
-/// uniform. Cosine: a uniform point of the unit disc, at radius √U, lifted onto the sphere (Malley; *Physically Based
-/// Rendering*, 4th ed., section A.5).
+/// Uniform: the area of a sphere between two heights is in proportion to their distance (Archimedes), so cos θ
+/// is uniform. Cosine: a uniform point of the unit disc, at radius √U, lifted onto the sphere (Malley;
+/// *Physically Based Rendering*, 4th ed., section A.5).
 ///
 /// # The ends
-/// U = k·2⁻⁵³ is never 1, so cos θ is never 0 and cosine's f/p never 0/0: the smallest cos θ is 2⁻⁵³ = 1.1e-16 for
-/// `Uniform` and 2⁻²⁶·⁵ = 1.05e-8 for `Cosine`, each with probability 2⁻⁵³. sin θ is computed from U and not as √(1 − cos² θ), which
-/// rounds to 0 for U < 2⁻⁵³ and loses half the digits long before.
+/// U = k·2⁻⁵³ is never 1, so cos θ is never 0 and cosine's f/p never 0/0: the smallest cos θ is 2⁻⁵³ = 1.1e-16
+/// for `Uniform` and 2⁻²⁶·⁵ = 1.05e-8 for `Cosine`, each with probability 2⁻⁵³. sin θ is computed from U and
+/// not as √(1 − cos² θ), which rounds to 0 for U < 2⁻⁵³ and loses half the digits long before.
 ///
 /// ```
 /// use rand::distr::Distribution;
@@ -215,7 +217,8 @@ impl Density for Hemisphere {
 
 /// sin 2πv and cos 2πv for v in \[0, 1\], to 2 ulp and exact at quarter turns.
 ///
-/// It takes less than half the time of `(TAU * v).sin_cos()`, and nothing but sums and products: the same bits on every machine.
+/// It takes less than half the time of `(TAU * v).sin_cos()`, and nothing but sums and products: the same bits
+/// on every machine.
 #[inline]
 fn sin_cos_of_turns(v: f64) -> (f64, f64) {
     // the nearest quarter turn, and the exact rest of at most an eighth

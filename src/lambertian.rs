@@ -1,7 +1,8 @@
 //! Section 3: light reflected by a diffuse surface.
 //!
-//! Every integral is L_r = ∫ f_r L_i cos θ dω over the directions above the surface, with f_r = ρ/π. [`Lambertian`] has its
-//! estimators for any light; a [`Light`] is one for which the answer, and the variance of each estimator, is known exactly.
+//! Every integral is L_r = ∫ f_r L_i cos θ dω over the directions above the surface, with f_r = ρ/π.
+//! [`Lambertian`] has its estimators for any light; a [`Light`] is one for which the answer, and the variance
+//! of each estimator, is known exactly.
 
 use std::f64::consts::PI;
 
@@ -14,8 +15,9 @@ use crate::run::{Estimator, from_fn};
 
 /// A diffuse surface: it reflects the part ρ of the light that falls on it, the same radiance in all directions.
 ///
-/// Its BRDF is f_r = ρ/π (worksheet 3; *Physically Based Rendering*, 4th ed., section 9.2), so the reflected radiance depends on
-/// the albedo ρ linearly and on the direction of view not at all (3.3). It emits nothing (3.1): outgoing radiance is L_r alone.
+/// Its BRDF is f_r = ρ/π (worksheet 3; *Physically Based Rendering*, 4th ed., section 9.2), so the reflected
+/// radiance depends on the albedo ρ linearly and on the direction of view not at all (3.3). It emits nothing
+/// (3.1): outgoing radiance is L_r alone.
 ///
 /// A light is any function of the direction that it comes from, in W m⁻² sr⁻¹; results are in the same unit.
 ///
@@ -70,8 +72,9 @@ impl Lambertian {
         self.albedo * radiance
     }
 
-    /// The estimator f_r L_i cos θ/p(ω) of L_r, its directions drawn from any `density`: the general form, of which
-    /// [`uniform_estimator`](Self::uniform_estimator) and [`cosine_estimator`](Self::cosine_estimator) are what is left when p is put in and cancelled on paper.
+    /// The estimator f_r L_i cos θ/p(ω) of L_r, its directions drawn from any `density`: the general form, of
+    /// which [`uniform_estimator`](Self::uniform_estimator) and [`cosine_estimator`](Self::cosine_estimator)
+    /// are what is left when p is put in and cancelled on paper.
     ///
     /// Directions below the horizon count as 0, so a density over the whole sphere will do, too.
     pub fn estimator<L, D>(self, light: L, density: D) -> impl Estimator
@@ -96,8 +99,9 @@ impl Lambertian {
         })
     }
 
-    /// The estimator ρ L_i of L_r, directions drawn in proportion to cos θ (worksheet 3.5). The directions must be *drawn* so:
-    /// with uniform ones this formula is right under a constant light and wrong under any other.
+    /// The estimator ρ L_i of L_r, directions drawn in proportion to cos θ (worksheet 3.5). The directions must
+    /// be *drawn* so: with uniform ones this formula is right under a light that does not depend on θ, such as a
+    /// constant one, and wrong under others.
     pub fn cosine_estimator<L: Fn(&Direction) -> f64 + Sync>(self, light: L) -> impl Estimator {
         from_fn(move |rng| {
             let direction = Hemisphere::Cosine.sample(rng);
@@ -132,7 +136,8 @@ pub trait Light: Sync {
     fn variance(&self, surface: Lambertian, hemisphere: Hemisphere) -> f64;
 }
 
-/// L_i = cos^a θ with a > −2: brighter overhead for a > 0, along the horizon for a < 0, and a constant light for a = 0.
+/// L_i = cos^a θ with a > −2: brighter overhead for a > 0, along the horizon for a < 0, and a constant light
+/// for a = 0.
 ///
 /// | | value | finite for |
 /// |---|---|---|
@@ -140,8 +145,14 @@ pub trait Light: Sync {
 /// | variance, uniform | 4ρ² (a+1)²/((2a+3)(a+2)²) | a > −3/2 |
 /// | variance, cosine | ρ² a²/((a+1)(a+2)²) | a > −1 |
 ///
-/// So neither density always wins: cosine has no variance at a = 0, uniform none at a = −1 (where cosine's is infinite), and
-/// at a = −1/2 they are equal. The forms 4ρ²\[1/(2a+3) − 1/(a+2)²\] and ρ²\[1/(a+1) − 4/(a+2)²\] are the same, but cancel.
+/// So neither density always wins: cosine has no variance at a = 0, uniform none at a = −1 (where cosine's is
+/// infinite), and at a = −1/2 they are equal. The forms 4ρ²\[1/(2a+3) − 1/(a+2)²\] and ρ²\[1/(a+1) − 4/(a+2)²\]
+/// are the same, but cancel.
+///
+/// # The ends
+/// No direction is drawn below the smallest cos θ of [`Hemisphere`], where 2^(−53(a+2)) of the light is for
+/// uniform directions and 2^(−26.5(a+2)) for cosine ones. That is less than 1.1e-8 wherever the variance is
+/// finite, but 2.5 % and 16 % at a = −1.9.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CosinePower {
     a: f64,
@@ -194,10 +205,11 @@ impl Light for CosinePower {
 
 /// L_i = 1 where 0 < cos θ ≤ ε, and 0 elsewhere: a ring along the horizon, with 0 < ε ≤ 1.
 ///
-/// L_r = ρε²; the variance is ρ²(4ε³/3 − ε⁴) with uniform directions and ρ²ε²(1 − ε²) with cosine ones. Cosine's is the larger
-/// for ε < 3/4: 297/37 = 8.03 times at ε = 0.1.
+/// L_r = ρε²; the variance is ρ²(4ε³/3 − ε⁴) with uniform directions and ρ²ε²(1 − ε²) with cosine ones.
+/// Cosine's is the larger for ε < 3/4: 297/37 = 8.03 times at ε = 0.1.
 ///
-/// The edge cos θ = ε is lit so that ε = 1 is a constant light, the normal included.
+/// The edge cos θ = ε is lit, so that ε = 1 is a constant light, the normal included. Cosine directions, whose
+/// cos θ is 1.05e-8 or more, never see a narrower ring.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RingLight {
     width: f64,

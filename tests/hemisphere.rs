@@ -1,7 +1,9 @@
-//! Section 3 and 4: directions have unit length, are distributed as their densities say, and come back to the numbers they were drawn from.
+//! Section 3 and 4: directions have unit length, are distributed as their densities say, and come back to the
+//! numbers they were drawn from.
 //!
-//! False alarms: every test of a distribution uses the Dvoretzky–Kiefer–Wolfowitz–Massart inequality at α = 1e-12, which
-//! holds for every n and every continuous cdf, so the 30 of them together stay below 3e-11 a run. All else is arithmetic.
+//! False alarms: every test of a distribution uses the Dvoretzky–Kiefer–Wolfowitz–Massart inequality at α =
+//! 1e-12, which holds for every n and every continuous cdf, so the 30 of them together stay below 3e-11 a run.
+//! All else is arithmetic.
 
 mod common;
 
