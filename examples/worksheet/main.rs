@@ -22,6 +22,12 @@ mod q3_4;
 mod q3_5;
 #[path = "../q3_6_variance.rs"]
 mod q3_6;
+#[path = "../q5_1_bounces.rs"]
+mod q5_1;
+#[path = "../q5_2_few_bounces.rs"]
+mod q5_2;
+#[path = "../q5_3_more_bounces.rs"]
+mod q5_3;
 
 fn main() -> ExitCode {
     workbook::worksheet(&[
@@ -34,5 +40,8 @@ fn main() -> ExitCode {
         ("3.4", q3_4::answer),
         ("3.5", q3_5::answer),
         ("3.6", q3_6::answer),
+        ("5.1", q5_1::answer),
+        ("5.2", q5_2::answer),
+        ("5.3", q5_3::answer),
     ])
 }

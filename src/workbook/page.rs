@@ -125,10 +125,10 @@ fn numbers(answers: &[&Answer]) -> Markup {
                             td { (answer.question()) }
                             td { (answer.what())
                                 @for (name, value) in answer.parameters() { ", " (name) " = " (value) } }
-                            td { @if let Some(truth) = answer.exact() { (shortened(truth)) } }
+                            td { @if let Some(truth) = answer.exact() { (print::shortened(truth)) } }
                             td {
                                 @if answer.estimate().is_some() { (print::interval(answer)) }
-                                @else if let Some(value) = answer.found() { (shortened(value)) }
+                                @else if let Some(value) = answer.found() { (print::shortened(value)) }
                             }
                             td { @if let Some(z) = answer.z() { (format!("{z:.2}").replace('-', "−")) }
                                 @match answer.agrees() { Some(true) => " ✓", Some(false) => " ✗", None => "" } }
@@ -149,16 +149,6 @@ fn grouped(count: u64) -> String {
         format!("{gap}{}", char::from(digit))
     });
     thirds.collect()
-}
-
-/// Ten significant digits at most, trailing zeros left out.
-fn shortened(value: f64) -> String {
-    let rounded = format!("{value:.9e}").parse().unwrap_or(value);
-    if rounded == 0.0 || (1e-6..1e12).contains(&f64::abs(rounded)) {
-        format!("{rounded}")
-    } else {
-        format!("{rounded:e}")
-    }
 }
 
 fn mathml(latex: &str) -> Result<String> {
