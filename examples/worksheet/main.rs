@@ -1,0 +1,38 @@
+//! The whole worksheet: every question answered in closed form, by an estimator with its error bar, and in a picture, on one page.
+
+use std::process::ExitCode;
+
+use unbiased::workbook;
+
+#[path = "../q1_1_exponential.rs"]
+mod q1_1;
+#[path = "../q1_2_one_sample.rs"]
+mod q1_2;
+#[path = "../q1_3_axes.rs"]
+mod q1_3;
+#[path = "../q3_1_emission.rs"]
+mod q3_1;
+#[path = "../q3_2_uniform_sky.rs"]
+mod q3_2;
+#[path = "../q3_3_dependence.rs"]
+mod q3_3;
+#[path = "../q3_4_uniform_directions.rs"]
+mod q3_4;
+#[path = "../q3_5_cosine_directions.rs"]
+mod q3_5;
+#[path = "../q3_6_variance.rs"]
+mod q3_6;
+
+fn main() -> ExitCode {
+    workbook::worksheet(&[
+        ("1.1", q1_1::answer),
+        ("1.2", q1_2::answer),
+        ("1.3", q1_3::answer),
+        ("3.1", q3_1::answer),
+        ("3.2", q3_2::answer),
+        ("3.3", q3_3::answer),
+        ("3.4", q3_4::answer),
+        ("3.5", q3_5::answer),
+        ("3.6", q3_6::answer),
+    ])
+}
