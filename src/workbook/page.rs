@@ -145,7 +145,7 @@ fn numbers(answers: &[&Answer]) -> Markup {
 fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let thirds = digits.bytes().enumerate().map(|(i, digit)| {
-        let gap = if i > 0 && (digits.len() - i) % 3 == 0 { "\u{202f}" } else { "" };
+        let gap = if i > 0 && (digits.len() - i).is_multiple_of(3) { "\u{202f}" } else { "" };
         format!("{gap}{}", char::from(digit))
     });
     thirds.collect()
