@@ -261,7 +261,7 @@ fn directions_say_what_they_are() {
     assert_eq!(Direction::new(1.0, -0.0, 0.0).unwrap().phi().to_bits(), 0);
     assert!(Direction::new(1.0, -1e-300, 0.0).unwrap().phi() < TAU);
     // near the normal 1 − cos² θ has half its digits; and squares below the smallest number
-    let cos = 1.0 - 1.1e-8;
+    let cos: f64 = 1.0 - 1.1e-8;
     let exact = ((1.0 - cos) * (2.0 - (1.0 - cos))).sqrt();
     let near = Direction::polar(cos, 0.0).unwrap();
     assert_relative_eq!(near.sin_theta(), exact, epsilon = 0.0, max_relative = 2.0 * f64::EPSILON);
@@ -338,9 +338,10 @@ proptest! {
             for u in [u, tiny, 1.0 - tiny] {
                 let [u_back, v_back] = hemisphere.uniforms_of(&hemisphere.direction_of(u, v).unwrap()).unwrap();
                 // sin θ is good to 3 ulp, its square to 7; near the horizon u's last digit is cos² θ's
-                let close = if u < 0.7 { 8.0 * u } else { 1.0 };
+                let close = if u < 0.5 { 8.0 * u } else { 1.0 };
                 prop_assert!((u_back - u).abs() <= close * f64::EPSILON, "{u} {u_back}");
-                prop_assert!((v_back - v).abs() <= 2.0 * f64::EPSILON, "{v} {v_back}");
+                // the normal itself has no φ
+                prop_assert!(u == 0.0 || (v_back - v).abs() <= 2.0 * f64::EPSILON, "{v} {v_back}");
                 prop_assert!((0.0..=1.0).contains(&u_back) && (0.0..=1.0).contains(&v_back));
             }
         }

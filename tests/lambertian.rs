@@ -14,6 +14,7 @@ use approx::assert_relative_eq;
 use proptest::prelude::*;
 use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
+use rayon::prelude::*;
 use unbiased::hemisphere::{Direction, Hemisphere};
 use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
 use unbiased::{Budget, Density, Error, Estimate, Estimator, Stream, estimate, from_fn};
@@ -78,8 +79,8 @@ const POWERS: [Row; 26] = [
     (-0.999999999, 1.0, [1.999999998, 3.9999997577445526e-18, 1000000024.2819322]),
     (-1.5, 0.61, [2.44, INF, INF]),
     (-1.4999999999999996, 0.61, [2.4399999999999977, 1675789421344555.5, INF]),
-    (-1.05, 1.0, [1.2842105263157895, 0.004581101877500778, INF]),
-    (-1.55, 1.0, [2.7111111111111112, INF, INF]),
+    (-1.05, 0.61, [1.2842105263157895, 0.004581101877500778, INF]),
+    (-1.55, 0.61, [2.7111111111111112, INF, INF]),
     (-1.9, 0.61, [12.199999999999989, INF, INF]),
     (-1.9999999999999996, 0.61, [2747195772696002.5, INF, INF]),
     (1e-09, 0.61, [0.609999999695, 0.12403333337467777, 9.302499981395001e-20]),
@@ -462,6 +463,47 @@ fn second_moments_tell_mistakes_of_equal_means_apart() {
         ("cosine drawn, weight cos θ", 0.5),
     ] {
         assert!(of(name).z(second).unwrap().abs() <= 7.5, "{name}");
+    }
+}
+
+/// The 95 % interval covers the truth in 94–96 % of 10,000 seeds, from the n on that is given with each light. Skewness γ costs
+/// 0.25 γ²/n of it (Edgeworth): 1,000 draws do for γ < 4, but under the ring of width 0.1 a cosine draw is ρ once in
+/// a hundred times (γ = 9.8) and needs 10,000, and under cos^(−½) θ it has no fourth moment (γ = 7.1) and gets 4,000. A constant
+/// light is left out for cosine: its interval is a single point.
+///
+/// The share's own std error is 0.22 %, so at the fixed seed the bounds hold for certain, and fresh seeds are given
+/// 0.6 % for skewness and 7.5 std errors (6.4e-14 each).
+#[test]
+fn intervals_cover_the_truth() {
+    let room = if std::env::var_os("UNBIASED_SEED").is_some() { 0.0224 } else { 0.01 };
+    let power = |a: f64| Box::new(CosinePower::new(a).unwrap()) as Box<dyn Light>;
+    let ring = |width: f64| Box::new(RingLight::new(width).unwrap()) as Box<dyn Light>;
+    let surface = Lambertian::new(0.61).unwrap();
+    for (name, light, draws_uniform, draws_cosine) in [
+        ("1", power(0.0), 1000, 0),
+        ("cos θ", power(1.0), 1000, 1000),
+        ("cos² θ", power(2.0), 1000, 1000),
+        ("cos^(−½) θ", power(-0.5), 1000, 4000),
+        ("ring 0.1", ring(0.1), 1000, 10_000),
+        ("ring 3/4", ring(0.75), 1000, 1000),
+    ] {
+        let incoming = |direction: &Direction| light.incoming(direction);
+        let uniform: Box<dyn Estimator> = Box::new(surface.uniform_estimator(incoming));
+        let cosine: Box<dyn Estimator> = Box::new(surface.cosine_estimator(incoming));
+        let truth = light.reflected(surface);
+        for (estimator, draws) in [(uniform, draws_uniform), (cosine, draws_cosine)] {
+            if draws == 0 {
+                continue;
+            }
+            let covers = |i: &u64| {
+                let run = estimate(&estimator, Budget::Draws(draws), common::seed(400_000 + i)).unwrap();
+                let [low, high] = run.confidence_interval(0.95).unwrap();
+                low <= truth && truth <= high
+            };
+            let share = (0..10_000u64).into_par_iter().filter(covers).count() as f64 / 10_000.0;
+            println!("{name}, n = {draws}: {share}");
+            assert!((share - 0.95).abs() <= room, "{name}, n = {draws}: {share}");
+        }
     }
 }
 
