@@ -1,0 +1,18 @@
+//! What all tests share: seeds and proptest's settings.
+#![allow(dead_code)] // each test takes what it needs
+
+/// Fixed by default; `UNBIASED_SEED=n` gives the whole suite fresh ones.
+pub fn seed(n: u64) -> u64 {
+    let fresh: u64 = std::env::var("UNBIASED_SEED").ok().and_then(|s| s.parse().ok()).unwrap_or(0);
+    n.wrapping_add(fresh.wrapping_mul(1_000_003))
+}
+
+/// proptest's settings: as many cases as asked for, the same ones on every run.
+pub fn config(cases: u32) -> proptest::test_runner::Config {
+    proptest::test_runner::Config {
+        cases,
+        rng_seed: proptest::test_runner::RngSeed::Fixed(seed(1)),
+        failure_persistence: None,
+        ..Default::default()
+    }
+}
