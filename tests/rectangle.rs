@@ -4,6 +4,8 @@
 //! This file holds about 130 of the first and 22 of the second: less than 4e-10 in all, for fresh seeds; with the fixed
 //! ones, never. What a test can see is said beside it.
 
+#![allow(clippy::float_cmp)] // where == is used, the same number is meant
+
 mod common;
 
 use std::convert::Infallible;
@@ -167,8 +169,10 @@ fn point_sets(make: impl Fn(F) -> Box<dyn Estimator>, replicates: usize, seed: u
         .collect()
 }
 
+type Make = Box<dyn Fn(F) -> Box<dyn Estimator>>;
+
 /// Every way of drawing points, with a small odd number of them and with a power of two.
-fn ways(r: Rectangle) -> Vec<(&'static str, Box<dyn Fn(F) -> Box<dyn Estimator>>)> {
+fn ways(r: Rectangle) -> Vec<(&'static str, Make)> {
     vec![
         ("independent", Box::new(move |f| Box::new(r.independent(f)))),
         ("ratio", Box::new(move |f| Box::new(ratio(move |&[x, y]: &[f64; 2]| f(x, y), r)))),
@@ -343,18 +347,18 @@ fn closed_forms_agree_with_quadrature_by_another_program() {
     let holds = rectangle([-2.5, 2.6], [-3.0, 2.2]);
     #[rustfmt::skip]
     let rows = [
-        (SHEET, Integrand::Paraboloid, 42.6666666666666667, 728.177777777777778, 728.177777777777778),
-        (SHEET, Integrand::Gaussian, 3.1122703197174722, 15.443330846061863, 11.83078942472328),
-        (SHEET, Integrand::Product, 0.0, 455.111111111111111, 0.0),
-        (offset(), Integrand::Paraboloid, 26.9506666666666672, 386.086230867111127, 386.086230867111127),
-        (offset(), Integrand::Gaussian, 0.984504091915797223, 1.99130927598629913, 0.65293673396975602 + 0.799671608183964009),
-        (offset(), Integrand::Product, 7.61472499999999982, 116.949846408819454, 10.5591598252083331 + 90.0010765502083414),
-        (about, Integrand::Paraboloid, 15.7986666666666653, 234.565642493777718, 234.565642493777718),
-        (about, Integrand::Gaussian, 2.25415143814298365, 4.41074487893109615, 0.370264906198223648 + 3.76604946296488141),
-        (about, Integrand::Product, 1.30687500000000011, 27.2241628354861119, 6.58119379687499866 + 4.253359005208335),
-        (holds, Integrand::Paraboloid, 121.550000000000011, 6529.71817721600089, 6529.71817721600089),
-        (holds, Integrand::Gaussian, 3.13762275296109978, 31.8126004404154275, 10.1982352854635143 + 10.6165429165090368),
-        (holds, Integrand::Product, -0.530400000000000381, 3682.90835328000064, 243.908046719999925 + 3.96198192000000772),
+        (SHEET, Integrand::Paraboloid, 42.666666666666664, 728.1777777777778, 728.1777777777778),
+        (SHEET, Integrand::Gaussian, 3.112270319717472, 15.443330846061864, 11.83078942472328),
+        (SHEET, Integrand::Product, 0.0, 455.1111111111111, 0.0),
+        (offset(), Integrand::Paraboloid, 26.950666666666667, 386.0862308671111, 386.0862308671111),
+        (offset(), Integrand::Gaussian, 0.9845040919157972, 1.9913092759862991, 0.652936733969756 + 0.799671608183964),
+        (offset(), Integrand::Product, 7.614725, 116.94984640881945, 10.559159825208333 + 90.00107655020834),
+        (about, Integrand::Paraboloid, 15.798666666666666, 234.56564249377772, 234.56564249377772),
+        (about, Integrand::Gaussian, 2.2541514381429835, 4.410744878931096, 0.37026490619822366 + 3.7660494629648813),
+        (about, Integrand::Product, 1.306875, 27.224162835486112, 6.581193796874999 + 4.253359005208335),
+        (holds, Integrand::Paraboloid, 121.55000000000001, 6529.718177216001, 6529.718177216001),
+        (holds, Integrand::Gaussian, 3.1376227529610996, 31.812600440415427, 10.198235285463515 + 10.616542916509037),
+        (holds, Integrand::Product, -0.5304000000000004, 3682.9083532800005, 243.90804671999993 + 3.961981920000008),
         (holds, Integrand::Disc, 4.0 * PI, 4.0 * PI * (26.52 - 4.0 * PI), (5.1 + 5.2) * 128.0 / 3.0 - 32.0 * PI * PI),
         (SHEET, Integrand::Disc, 4.0 * PI, 4.0 * PI * (16.0 - 4.0 * PI), 8.0 * 128.0 / 3.0 - 32.0 * PI * PI),
         (SHEET, Integrand::Constant, 16.0, 0.0, 0.0),
@@ -374,10 +378,10 @@ fn closed_forms_agree_with_quadrature_by_another_program() {
     }
     let inverse = Integrand::InverseDistance;
     for (r, integral) in [
-        (SHEET, 14.1019773923126884),
-        (offset(), 4.7125555917886499),
-        (about, 8.43980044029643039),
-        (holds, 18.0667918540203974),
+        (SHEET, 14.101977392312689),
+        (offset(), 4.71255559178865),
+        (about, 8.43980044029643),
+        (holds, 18.066791854020398),
     ] {
         assert_relative_eq!(inverse.integral(&r).unwrap(), integral, epsilon = 0.0, max_relative = 2e-15);
         let infinite = (r != offset()).then_some(f64::INFINITY);
@@ -397,27 +401,27 @@ fn closed_forms_hold_at_the_ends_of_the_range() {
     let tiny = 1e-300;
     #[rustfmt::skip]
     let rows = [
-        (Integrand::InverseDistance, [0.0, tiny], [0.0, 1e300], Some(1.3832442029769873904e-297), Some(f64::INFINITY)),
-        (Integrand::InverseDistance, [-tiny, tiny], [-1e300, 1e300], Some(5.5329768119079495616e-297), Some(f64::INFINITY)),
-        (Integrand::InverseDistance, [-1e150, 3e150], [-1e-150, 2e-150], Some(4.1553352986164064771e-147), Some(f64::INFINITY)),
-        (Integrand::InverseDistance, [0.0, 1e9], [0.0, 1.0], Some(22.416413017506356466), Some(f64::INFINITY)),
-        (Integrand::InverseDistance, [3.0, 4.0], [0.0, 1.0], Some(0.28378148350631295257), None),
-        (Integrand::InverseDistance, [1e-9, 1.0], [1e-9, 1.0], Some(1.7627471309690071895), None),
+        (Integrand::InverseDistance, [0.0, tiny], [0.0, 1e300], Some(1.3832442029769874e-297), Some(f64::INFINITY)),
+        (Integrand::InverseDistance, [-tiny, tiny], [-1e300, 1e300], Some(5.5329768119079495e-297), Some(f64::INFINITY)),
+        (Integrand::InverseDistance, [-1e150, 3e150], [-1e-150, 2e-150], Some(4.1553352986164063e-147), Some(f64::INFINITY)),
+        (Integrand::InverseDistance, [0.0, 1e9], [0.0, 1.0], Some(22.416413017506358), Some(f64::INFINITY)),
+        (Integrand::InverseDistance, [3.0, 4.0], [0.0, 1.0], Some(0.28378148350631294), None),
+        (Integrand::InverseDistance, [1e-9, 1.0], [1e-9, 1.0], Some(1.7627471309690073), None),
         (Integrand::InverseDistance, [1e9, 1e9 + 1.0], [0.0, 1.0], None, None),
-        (Integrand::Paraboloid, [1e100, 3e100], [1e-250, 2e-250], Some(8.6666666666666657997e50), Some(2.1688888888888882733e101)),
-        (Integrand::Paraboloid, [1e154, 1.5e154], [-1e-154, 0.0], Some(7.9166666666666690043e307), Some(f64::INFINITY)),
-        (Integrand::Product, [1e100, 3e100], [1e-250, 2e-250], Some(5.9999999999999999646e-300), Some(0.0)),
-        (Integrand::Product, [1e154, 1.5e154], [-1e-154, 0.0], Some(-0.31250000000000006198), None),
-        (Integrand::Gaussian, [0.0, 1e300], [0.0, tiny], Some(8.8622692545275803586e-301), Some(6.2665706865775018991e-301)),
-        (Integrand::Gaussian, [3.0, 4.0], [-1.0, 1.0], Some(0.000029221032725264563589), Some(2.1045597902100116373e-9)),
-        (Integrand::Gaussian, [-2.0, -1.0], [0.25, 0.5], Some(0.029268739946639153771), Some(0.00048051846208279447888)),
-        (Integrand::Gaussian, [0.0, 0.5], [0.0, 0.5], Some(0.21278016687719866823), Some(0.0004804193337620764092)),
-        (Integrand::Gaussian, [-1e300, 1e300], [-1.0, 1.0], Some(2.6474226203051176617), Some(5.9972987175931937996e300)),
-        (Integrand::Gaussian, [10.0, 11.0], [0.5, 2.0], Some(7.7884846067527622404e-46), Some(9.6850104640968847466e-90)),
-        (Integrand::Gaussian, [2.0, 2.0 + 1e-9], [0.0, 1.0], Some(1.3678562234396564671e-11), None),
-        (Integrand::Gaussian, [20.0, 26.0], [-1.0, 0.5], Some(5.777112132202588185e-176), Some(0.0)),
-        (Integrand::Gaussian, [25.0, 25.0 + 1.0 / (1u64 << 40) as f64], [0.0, 1.0], Some(2.50015726279106785e-284), Some(0.0)),
-        (Integrand::Gaussian, [26.5, 1e10], [0.0, 1.0], Some(1.4633017404444406861e-307), Some(0.0)),
+        (Integrand::Paraboloid, [1e100, 3e100], [1e-250, 2e-250], Some(8.666666666666665e50), Some(2.1688888888888882e101)),
+        (Integrand::Paraboloid, [1e154, 1.5e154], [-1e-154, 0.0], Some(7.916666666666669e307), Some(f64::INFINITY)),
+        (Integrand::Product, [1e100, 3e100], [1e-250, 2e-250], Some(6e-300), Some(0.0)),
+        (Integrand::Product, [1e154, 1.5e154], [-1e-154, 0.0], Some(-0.31250000000000006), None),
+        (Integrand::Gaussian, [0.0, 1e300], [0.0, tiny], Some(8.86226925452758e-301), Some(6.266570686577502e-301)),
+        (Integrand::Gaussian, [3.0, 4.0], [-1.0, 1.0], Some(2.9221032725264563e-05), Some(2.1045597902100118e-09)),
+        (Integrand::Gaussian, [-2.0, -1.0], [0.25, 0.5], Some(0.029268739946639154), Some(0.0004805184620827945)),
+        (Integrand::Gaussian, [0.0, 0.5], [0.0, 0.5], Some(0.21278016687719867), Some(0.0004804193337620764)),
+        (Integrand::Gaussian, [-1e300, 1e300], [-1.0, 1.0], Some(2.6474226203051177), Some(5.997298717593193e300)),
+        (Integrand::Gaussian, [10.0, 11.0], [0.5, 2.0], Some(7.788484606752762e-46), Some(9.685010464096884e-90)),
+        (Integrand::Gaussian, [2.0, 2.0 + 1e-9], [0.0, 1.0], Some(1.3678562234396564e-11), None),
+        (Integrand::Gaussian, [20.0, 26.0], [-1.0, 0.5], Some(5.777112132202588e-176), Some(0.0)),
+        (Integrand::Gaussian, [25.0, 25.0 + 1.0 / (1u64 << 40) as f64], [0.0, 1.0], Some(2.500157262791068e-284), Some(0.0)),
+        (Integrand::Gaussian, [26.5, 1e10], [0.0, 1.0], Some(1.4633017404444406e-307), Some(0.0)),
         (Integrand::Gaussian, [100.0, 200.0], [0.0, 1.0], Some(0.0), Some(0.0)),
         (Integrand::Disc, [-tiny, tiny], [-1.0, 1.0], Some(4e-300), Some(0.0)),
         (Integrand::Disc, [1.5, 1e300], [1.5, 2.0], Some(0.0), Some(0.0)),
@@ -502,7 +506,7 @@ fn the_inverse_distance_has_its_mean_and_clamping_it_is_biased() {
     }
     // where the origin is far, the variance is finite and the estimate can be tested as it is
     let far = offset().independent(|x, y| Integrand::InverseDistance.at(x, y));
-    assert_mean("1/r, offset", &far, 4.7125555917886499, 1_000_000, seed(241));
+    assert_mean("1/r, offset", &far, 4.71255559178865, 1_000_000, seed(241));
 }
 
 #[test]
@@ -648,7 +652,7 @@ fn sobol_points_are_exact_on_each_axis() {
 fn any_number_of_sobol_points_is_unbiased() {
     for n in [3, 100, 1000] {
         let estimator = offset().sobol(|x, y| Integrand::Gaussian.at(x, y), n).unwrap();
-        assert_mean(&format!("{n} Sobol points"), &estimator, 0.984504091915797223, 20_000, seed(330 + n));
+        assert_mean(&format!("{n} Sobol points"), &estimator, 0.9845040919157972, 20_000, seed(330 + n));
     }
 }
 
@@ -656,7 +660,7 @@ fn any_number_of_sobol_points_is_unbiased() {
 /// 14/√20,000 = 0.1.
 #[test]
 fn replicates_are_independent_of_each_other() {
-    let mean = 0.984504091915797223;
+    let mean = 0.9845040919157972;
     let bell = |x: f64, y: f64| Integrand::Gaussian.at(x, y);
     let estimators: [Box<dyn Estimator>; 3] = [
         Box::new(offset().all_pairs(bell, 8).unwrap()),
@@ -689,8 +693,9 @@ fn slope(
     [0.5 * (fine / coarse).ln() / step.ln(), 0.5 * coarse_off.hypot(fine_off) / step.ln()]
 }
 
-/// −1/2 for independent points; −1 for jittered ones, up to terms of the order of the cells' size squared (4 % and 0.06 % of the variance at 8² and 64² cells: 0.005 of
-/// the slope); at most −1.4 for Sobol, where theory says −3/2 and a logarithm. All pairs: −1/4, since the main effects fall as 1/n = 1/√evaluations only. At 7 standard errors, which are also seen.
+/// −1/2 for independent points; −1 for jittered ones, up to terms of the order of the cells' size squared (4 % and 0.06 % of the variance at 8²
+/// and 64² cells: 0.005 of the slope). All pairs: near −1/4, since the main effects fall as 1/n = 1/√evaluations only. Sobol: −3/2 and a logarithm,
+/// for xy exactly −1.434 from 2⁸ to 2¹⁴; the Gaussian, −1.436 ± 0.004 here, must stay below −1.35. Seen is an error of 0.05 to 0.1 in a slope.
 #[test]
 fn the_error_falls_as_it_should() {
     let f = |x: f64, y: f64| Integrand::Gaussian.at(x, y);
@@ -706,14 +711,18 @@ fn the_error_falls_as_it_should() {
     let [by, off] = slope(&grid(8), &grid(64), 64.0, mean, [20_000, 5000], 352);
     assert!((by + 1.0).abs() <= 0.005 + Z * off && Z * off < 0.1, "jittered: {by} ± {off}");
 
+    let set = |points| SHEET.sobol(|x, y| x * y, points).unwrap();
+    let expected = 0.5 * (net_variance_of_xy(14) / net_variance_of_xy(8)).ln() / 64f64.ln();
+    let [by, off] = slope(&set(256), &set(16384), 64.0, 0.0, [20_000, 2000], 354);
+    assert!((by - expected).abs() <= Z * off && expected < -1.4, "Sobol, xy: {by} ± {off} for {expected}");
     let set = |points| SHEET.sobol(f, points).unwrap();
-    let [by, off] = slope(&set(256), &set(16384), 64.0, mean, [20_000, 4000], 354);
-    assert!(by + Z * off <= -1.4, "Sobol: {by} ± {off}");
+    let [by, off] = slope(&set(256), &set(16384), 64.0, mean, [20_000, 4000], 356);
+    assert!(by + Z * off <= -1.35, "Sobol, Gaussian: {by} ± {off}");
 
     let pairs = |n| SHEET.all_pairs(f, n).unwrap();
     let exact = |n| Integrand::Gaussian.all_pairs_variance(&SHEET, n).unwrap();
     let expected = 0.5 * (exact(64) / exact(8)).ln() / 64f64.ln();
-    let [by, off] = slope(&pairs(8), &pairs(64), 64.0, mean, [20_000, 5000], 356);
+    let [by, off] = slope(&pairs(8), &pairs(64), 64.0, mean, [20_000, 5000], 358);
     assert!((by - expected).abs() <= Z * off && (expected + 0.25).abs() < 0.02, "all pairs: {by} ± {off}");
 }
 
@@ -725,7 +734,7 @@ fn classic_mistakes_are_rejected_with_their_ratios() {
     let r = offset();
     let (w, h, area) = (1.7, 4.1, 1.7 * 4.1);
     let f = |x: f64, y: f64| Integrand::Product.at(x, y) + 2.0;
-    let truth = 7.61472499999999982 + 2.0 * area;
+    let truth = 7.614725 + 2.0 * area;
     let weighted = move |weight: f64| -> Box<dyn Estimator> {
         Box::new(from_fn(move |rng| {
             let [x, y] = r.sample(rng);
