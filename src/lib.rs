@@ -1,8 +1,58 @@
-//! Monte Carlo workbook.
+//! The Monte Carlo and global illumination workbook: every question in closed form, by an estimator with its error bar, and in
+//! a picture.
+//!
+//! All of it is one formula,
+//!
+//! > ⟨Fₙ⟩ = 1/n Σ f(Xᵢ)/p(Xᵢ),
+//!
+//! and the crate reads as it: a [`Density`] to draw from, an integrand, an [`Estimator`] made of the two by [`ratio`], a
+//! [run](estimate()) of it, and an [`Estimate`] with its error.
+//!
+//! ```
+//! use unbiased::{Budget, estimate, hemisphere::Hemisphere, lambertian::Lambertian};
+//!
+//! // radiance reflected by a surface of albedo 0.8 under a sky of radiance cos θ: 2ρ/3
+//! let cube = Lambertian::new(0.8)?;
+//! let by_uniform = cube.estimator(|w| w.cos_theta(), Hemisphere::Uniform);
+//! let by_cosine = cube.estimator(|w| w.cos_theta(), Hemisphere::Cosine);
+//! let [uniform, cosine] = [
+//!     estimate(&by_uniform, Budget::Draws(100_000), 1)?,
+//!     estimate(&by_cosine, Budget::Draws(100_000), 1)?,
+//! ];
+//! assert!(uniform.z(1.6 / 3.0).unwrap().abs() < 4.0);
+//! assert!(cosine.z(1.6 / 3.0).unwrap().abs() < 4.0);
+//! assert!(cosine.std_error() < uniform.std_error());
+//! # Ok::<(), unbiased::Error>(())
+//! ```
+//!
+//! # From worksheet to modules
+//!
+//! | section | module | holds |
+//! |---|---|---|
+//! | 1 The inversion method | [`inversion`] | the exponential distribution, and the inversion of any one-dimensional cdf |
+//! | 2 Unbiased estimators | [`rectangle`] | independent pairs, all n² pairs, jittered and Sobol points on any rectangle |
+//! | 3 The diffuse cube | [`hemisphere`], [`lambertian`] | uniform and cosine directions, a Lambertian surface, lights with exact variances |
+//! | 5 Russian roulette | [`roulette`] | bounce counts, the wrapper X_rr, and what roulette costs and buys |
+//!
+//! Underneath lie [`density`](crate::Density), [`run`], [`estimate`](mod@estimate), [`stream`] and [`error`]; above, with the feature `workbook` (on by default),
+//! `figure` and `workbook`. The files in `examples/` are the answers to read, one a question.
+//!
+//! # Conventions
+//!
+//! U is uniform on [0, 1); ρ is an albedo, f_r = ρ/π the BRDF, θ the angle to the surface normal, ω_i points towards the light. A draw is one *independent*
+//! unbiased value: a jittered sweep or a scrambled Sobol set counts as one draw. Random numbers come from [`Stream`], a named generator
+//! with an explicit seed; the same seed gives the same bits for any number of threads.
+//!
+//! # Features
+//!
+//! - `workbook` (default): figures as SVG and CSV, the examples' command line, the page.
+//! - `png`, `pdf`: figures in those formats, too.
 
 pub mod density;
 pub mod error;
 pub mod estimate;
+#[cfg(feature = "workbook")]
+pub mod figure;
 pub mod hemisphere;
 pub mod inversion;
 pub mod lambertian;
@@ -10,9 +60,16 @@ pub mod rectangle;
 pub mod roulette;
 pub mod run;
 pub mod stream;
+#[cfg(feature = "workbook")]
+pub mod workbook;
 
 pub use density::{Density, Ratio, ratio};
 pub use error::{Error, Result};
 pub use estimate::Estimate;
 pub use run::{Budget, Cost, Estimator, FromFn, Outcome, Progress, Run, estimate, from_fn};
 pub use stream::Stream;
+
+/// The README's code runs as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,207 @@
+//! A figure for each thing worth looking at, as SVG with its numbers as CSV beside it.
+//!
+//! Every figure has a title and a description for readers who cannot see it, is 85 or 170 mm wide, reads in grey, and is the
+//! same bytes on every run. Where a question asks the student to mark or draw something there are two
+//! editions: [`Edition::Student`] has the same canvas and axes with nothing of the answer on it.
+
+mod inversion;
+mod plot;
+mod render;
+
+pub use inversion::{empirical_cdf, exponential, tails};
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, Result};
+
+/// For whom a figure or page is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Edition {
+    /// To be filled in: the same canvas, with no trace of an answer.
+    Student,
+    /// With the answer.
+    Solution,
+}
+
+/// A drawn figure: the picture, and the numbers in it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Figure {
+    name: String,
+    title: String,
+    edition: Edition,
+    svg: String,
+    csv: String,
+}
+
+impl Figure {
+    /// The file name without its ending: the question's number and a word, and `_student` in that edition.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What the figure shows, in a line.
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// For whom it was drawn.
+    pub fn edition(&self) -> Edition {
+        self.edition
+    }
+
+    /// The picture: an SVG document with a title, a description and sizes in mm.
+    pub fn svg(&self) -> &str {
+        &self.svg
+    }
+
+    /// The numbers drawn, to six significant digits, a row per point: `panel,series,x,y,low,high`.
+    pub fn csv(&self) -> &str {
+        &self.csv
+    }
+
+    /// Writes `name.svg` and `name.csv` into `folder`, which is made if need be (with the features `png` and `pdf`
+    /// those formats, too). Each file appears whole or not at all. Returns the paths, the SVG's first.
+    ///
+    /// # Errors
+    /// If the folder or a file cannot be written.
+    pub fn save(&self, folder: &Path) -> Result<Vec<PathBuf>> {
+        #[cfg_attr(not(any(feature = "png", feature = "pdf")), expect(unused_mut))]
+        let mut files = vec![("svg", self.svg.clone().into_bytes()), ("csv", self.csv.clone().into_bytes())];
+        #[cfg(feature = "png")]
+        files.push(("png", self.png(300.0)?));
+        #[cfg(feature = "pdf")]
+        files.push(("pdf", self.pdf()?));
+        files
+            .into_iter()
+            .map(|(ending, bytes)| {
+                let path = folder.join(format!("{}.{ending}", self.name));
+                write_whole(&path, &bytes)?;
+                Ok(path)
+            })
+            .collect()
+    }
+
+    /// The picture as PNG, with this many dots to the inch, on white.
+    ///
+    /// # Errors
+    /// If the picture cannot be drawn at this size.
+    #[cfg(feature = "png")]
+    pub fn png(&self, dots_per_inch: f32) -> Result<Vec<u8>> {
+        use resvg::{tiny_skia, usvg};
+        let failed = |reason: String| Error::Draft { what: self.name.clone(), reason };
+        let mut options = usvg::Options::default();
+        provide_fonts(options.fontdb_mut());
+        let tree = usvg::Tree::from_str(&self.svg, &options).map_err(|error| failed(error.to_string()))?;
+        let scale = dots_per_inch / 96.0;
+        let size =
+            tree.size().to_int_size().scale_by(scale).ok_or_else(|| failed("it has no size".into()))?;
+        let mut pixels = tiny_skia::Pixmap::new(size.width(), size.height())
+            .ok_or_else(|| failed("it has no size".into()))?;
+        pixels.fill(tiny_skia::Color::WHITE);
+        resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixels.as_mut());
+        pixels.encode_png().map_err(|error| failed(error.to_string()))
+    }
+
+    /// The picture as a PDF page of its own size.
+    ///
+    /// # Errors
+    /// If the picture cannot be converted.
+    #[cfg(feature = "pdf")]
+    pub fn pdf(&self) -> Result<Vec<u8>> {
+        use svg2pdf::usvg;
+        let failed = |reason: String| Error::Draft { what: self.name.clone(), reason };
+        let mut options = usvg::Options::default();
+        provide_fonts(options.fontdb_mut());
+        let tree = usvg::Tree::from_str(&self.svg, &options).map_err(|error| failed(error.to_string()))?;
+        svg2pdf::to_pdf(&tree, Default::default(), Default::default())
+            .map_err(|error| failed(error.to_string()))
+    }
+}
+
+/// The fonts that the SVG was laid out with, so that no system font is needed.
+#[cfg(any(feature = "png", feature = "pdf"))]
+fn provide_fonts(fonts: &mut usvg_fonts::Database) {
+    fonts.load_font_data(dejavu::sans::regular().to_vec());
+    fonts.load_font_data(dejavu::sans::bold().to_vec());
+    fonts.set_sans_serif_family("DejaVu Sans");
+}
+
+#[cfg(all(feature = "png", not(feature = "pdf")))]
+use resvg::usvg::fontdb as usvg_fonts;
+#[cfg(feature = "pdf")]
+use svg2pdf::usvg::fontdb as usvg_fonts;
+
+/// Writes a file so that it appears whole or not at all, and its folder if need be.
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    let failed =
+        |error: std::io::Error| Error::Write { path: path.display().to_string(), reason: error.to_string() };
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).map_err(failed)?;
+    }
+    let mut part = path.as_os_str().to_owned();
+    part.push(".part");
+    fs::write(&part, bytes).and_then(|()| fs::rename(&part, path)).map_err(|error| {
+        // whatever was begun goes away again; if even that fails, the first error is the one to tell
+        let _ = fs::remove_file(&part);
+        failed(error)
+    })
+}
+
+/// Six significant digits, so that the last digits of a machine's ln and sin cannot be seen.
+fn six_digits(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return format!("{x}");
+    }
+    let size = x.abs().log10();
+    if (-4.0..15.0).contains(&size) {
+        // by way of {:e}, which rounds to significant digits
+        let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
+        format!("{rounded}")
+    } else {
+        let mut text = String::new();
+        // writing to a String cannot fail
+        let _ = write!(text, "{x:.5e}");
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_six_digits() {
+        for (x, shown) in [
+            (0.0, "0"),
+            (1.0, "1"),
+            (-0.25, "-0.25"),
+            (1.386_294_361_119_890_6, "1.38629"),
+            (123_456_789.0, "123457000"),
+            (0.000_123_456_789, "0.000123457"),
+            (1.234_567_89e-9, "1.23457e-9"),
+            (9.999_999_9e20, "1.00000e21"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(six_digits(x), shown);
+        }
+    }
+
+    #[test]
+    fn a_file_appears_whole_or_not_at_all() {
+        let folder = std::env::temp_dir().join(format!("unbiased-{}", std::process::id()));
+        let path = folder.join("deep").join("file.txt");
+        write_whole(&path, b"whole").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"whole");
+        // a folder in the file's place
+        let taken = folder.join("taken");
+        fs::create_dir_all(taken.join("inside")).unwrap();
+        assert!(matches!(write_whole(&taken, b"x"), Err(Error::Write { .. })));
+        let mut left: Vec<_> =
+            fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        left.sort();
+        assert_eq!(left, ["deep", "taken"]);
+        fs::remove_dir_all(&folder).unwrap();
+    }
+}

@@ -1,0 +1,375 @@
+//! Drawing a [`Plot`] with plotters, on a lattice ten times finer than shown: its coordinates are integers,
+//! and at one pixel a unit curves would be staircases.
+
+use std::sync::Once;
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{FontFamily, register_font};
+
+use super::plot::{Axis, Ink, Item, Marker, Panel, Plot, Side};
+use crate::error::{Error, Result};
+
+/// Lattice units in a millimetre: ten for each CSS pixel of 1/96 inch.
+const MM: f64 = 960.0 / 25.4;
+/// Lattice units in a typographic point.
+const PT: f64 = 960.0 / 72.0;
+
+const INK: RGBColor = RGBColor(0x22, 0x22, 0x22);
+const GREY: RGBColor = RGBColor(0x88, 0x88, 0x88);
+const FAINT: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
+
+/// plotters has no dashes: a line's opacity, one of these, says which it gets once the SVG is written.
+const DASHES: [(f64, &str); 3] = [(0.991, "75 30"), (0.992, "90 30 15 30"), (0.993, "15 25")];
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+pub(super) fn svg(plot: &Plot, name: &str) -> Result<String> {
+    register_fonts();
+    let size = ((plot.width.millimetres() * MM) as u32, (plot.height_mm * MM) as u32);
+    let mut svg = String::new();
+    draw(plot, &mut svg, size).map_err(|reason| Error::Draft { what: name.into(), reason })?;
+    Ok(finish(plot, name, &svg))
+}
+
+/// Even for SVG plotters asks a font for its metrics; this one has every Greek letter and sign needed.
+fn register_fonts() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        // a font that does not parse shows as an error of the first text drawn
+        let _ = register_font("sans-serif", FontStyle::Normal, dejavu::sans::regular());
+        let _ = register_font("sans-serif", FontStyle::Bold, dejavu::sans::bold());
+    });
+}
+
+fn draw(plot: &Plot, svg: &mut String, size: (u32, u32)) -> Result<(), String> {
+    let root = SVGBackend::with_string(svg, size).into_drawing_area();
+    let columns = plot.columns.max(1);
+    let areas = root.split_evenly((plot.panels.len().div_ceil(columns), columns));
+    for (panel, area) in plot.panels.iter().zip(&areas) {
+        draw_panel(panel, area).map_err(|error| error.to_string())?;
+    }
+    root.present().map_err(|error| error.to_string())
+}
+
+type Drawn = std::result::Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
+/// Where the axes of a panel lie on the lattice.
+struct Frame<'p> {
+    panel: &'p Panel,
+    left: f64,
+    right: f64,
+    top: f64,
+    bottom: f64,
+}
+
+impl Frame<'_> {
+    fn at(&self, [x, y]: [f64; 2]) -> (i32, i32) {
+        let (x, y) = (self.panel.x.place(x), self.panel.y.place(y));
+        (
+            (self.left + x * (self.right - self.left)).round() as i32,
+            (self.bottom - y * (self.bottom - self.top)).round() as i32,
+        )
+    }
+
+    fn holds(&self, [x, y]: [f64; 2]) -> bool {
+        let inside = |place: f64| (-1e-9..=1.0 + 1e-9).contains(&place);
+        inside(self.panel.x.place(x)) && inside(self.panel.y.place(y))
+    }
+
+    /// The runs of a curve that lie inside the axes, on the lattice.
+    fn clip(&self, points: &[[f64; 2]]) -> Vec<Vec<(i32, i32)>> {
+        let (x_axis, y_axis) = (&self.panel.x, &self.panel.y);
+        let placed = points.iter().map(|&[x, y]| [x_axis.place(x), y_axis.place(y)]).collect::<Vec<_>>();
+        let lattice = |[x, y]: [f64; 2]| {
+            (
+                (self.left + x * (self.right - self.left)).round() as i32,
+                (self.bottom - y * (self.bottom - self.top)).round() as i32,
+            )
+        };
+        let mut runs: Vec<Vec<(i32, i32)>> = Vec::new();
+        let mut end = None;
+        for pair in placed.windows(2) {
+            let &[from, to] = pair else { continue };
+            let Some([a, b]) = clip_segment(from, to) else {
+                end = None;
+                continue;
+            };
+            match runs.last_mut() {
+                Some(run) if end == Some(a) => run.push(lattice(b)),
+                _ => runs.push(vec![lattice(a), lattice(b)]),
+            }
+            end = Some(b);
+        }
+        runs
+    }
+}
+
+/// The part of a segment inside the unit square (Liang & Barsky 1984).
+fn clip_segment(from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+    let (mut enter, mut leave) = (0.0f64, 1.0f64);
+    let step = [to[0] - from[0], to[1] - from[1]];
+    for (start, step) in from.into_iter().zip(step) {
+        for (direction, room) in [(-step, start), (step, 1.0 - start)] {
+            if direction == 0.0 || !direction.is_finite() {
+                if room < 0.0 || !direction.is_finite() {
+                    return None;
+                }
+            } else if direction < 0.0 {
+                enter = enter.max(room / direction);
+            } else {
+                leave = leave.min(room / direction);
+            }
+        }
+    }
+    let along = |t: f64| [from[0] + t * step[0], from[1] + t * step[1]];
+    let a = if enter == 0.0 { from } else { along(enter) };
+    let b = if leave == 1.0 { to } else { along(leave) };
+    (enter <= leave).then_some([a, b])
+}
+
+fn draw_panel(panel: &Panel, area: &Area<'_>) -> Drawn {
+    let (width, height) = area.dim_in_pixel();
+    let widest = panel.y.ticks.iter().map(|(_, label)| label.chars().count()).max().unwrap_or(0) as f64;
+    let frame = Frame {
+        panel,
+        left: (14.0 + 5.4 * widest) * PT + 6.0 * PT,
+        right: f64::from(width) - 8.0 * PT,
+        top: 20.0 * PT,
+        bottom: f64::from(height) - 30.0 * PT,
+    };
+    for item in &panel.items {
+        if let Item::Shade { from, to } = *item {
+            let corners = [frame.at([from, panel.y.low]), frame.at([to, panel.y.high])];
+            area.draw(&Rectangle::new(corners, FAINT.filled()))?;
+        }
+    }
+    draw_axes(&frame, area)?;
+    for item in &panel.items {
+        draw_item(item, &frame, area)?;
+    }
+    Ok(())
+}
+
+fn draw_axes(frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
+    let Panel { heading, x, y, .. } = frame.panel;
+    let thin = INK.stroke_width((0.5 * PT) as u32);
+    let tick = 3.0 * PT;
+    let corner = |x: f64, y: f64| (x.round() as i32, y.round() as i32);
+    area.draw(&PathElement::new(
+        vec![
+            corner(frame.left, frame.top),
+            corner(frame.left, frame.bottom),
+            corner(frame.right, frame.bottom),
+        ],
+        thin,
+    ))?;
+    for (at, label) in visible(x) {
+        let (column, row) = frame.at([at, y.low]);
+        area.draw(&PathElement::new(vec![(column, row), (column, row + tick as i32)], thin))?;
+        let below = row + (1.6 * tick) as i32;
+        area.draw(&Text::new(label.to_string(), (column, below), font(8.0, &INK, HPos::Center, VPos::Top)))?;
+    }
+    for (at, label) in visible(y) {
+        let (column, row) = frame.at([x.low, at]);
+        area.draw(&PathElement::new(vec![(column - tick as i32, row), (column, row)], thin))?;
+        let beside = column - (1.7 * tick) as i32;
+        area.draw(&Text::new(label.to_string(), (beside, row), font(8.0, &INK, HPos::Right, VPos::Center)))?;
+    }
+    let middle = corner(0.5 * (frame.left + frame.right), frame.bottom + 17.0 * PT);
+    area.draw(&Text::new(x.name.clone(), middle, font(8.5, &INK, HPos::Center, VPos::Top)))?;
+    let beside = corner(1.0 * PT, 0.5 * (frame.top + frame.bottom));
+    let upright = font(8.5, &INK, HPos::Center, VPos::Top).transform(FontTransform::Rotate270);
+    area.draw(&Text::new(y.name.clone(), beside, upright))?;
+    let above = corner(frame.left, 4.0 * PT);
+    area.draw(&Text::new(heading.clone(), above, bold(9.0, &INK)))
+}
+
+fn visible(axis: &Axis) -> impl Iterator<Item = (f64, &str)> {
+    axis.ticks
+        .iter()
+        .filter(|(at, _)| (-1e-9..=1.0 + 1e-9).contains(&axis.place(*at)))
+        .map(|(at, label)| (*at, label.as_str()))
+}
+
+fn draw_item(item: &Item, frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
+    match item {
+        Item::Line { ink, points, .. } => {
+            for run in frame.clip(points) {
+                area.draw(&PathElement::new(run, stroke(*ink)))?;
+            }
+        }
+        Item::Band { ink, points, .. } => {
+            let clamp = |y: f64| y.clamp(frame.panel.y.low, frame.panel.y.high);
+            let inside = points.iter().filter(|[x, ..]| frame.holds([*x, frame.panel.y.low]));
+            let (mut low, mut high) = (Vec::new(), Vec::new());
+            for &[x, from, to] in inside {
+                low.push(frame.at([x, clamp(from)]));
+                high.push(frame.at([x, clamp(to)]));
+            }
+            high.reverse();
+            low.append(&mut high);
+            area.draw(&Polygon::new(low, colour(*ink).mix(0.25)))?;
+        }
+        Item::Marks { ink, marker, points, .. } => {
+            for &point in points.iter().filter(|&&point| frame.holds(point)) {
+                draw_marker(frame.at(point), *ink, *marker, area)?;
+            }
+        }
+        Item::ErrorBars { ink, marker, points, .. } => {
+            for &[x, y, low, high] in points.iter().filter(|[x, y, ..]| frame.holds([*x, *y])) {
+                for run in frame.clip(&[[x, low], [x, high]]) {
+                    area.draw(&PathElement::new(run, colour(*ink).stroke_width((0.8 * PT) as u32)))?;
+                }
+                draw_marker(frame.at([x, y]), *ink, *marker, area)?;
+            }
+        }
+        Item::Bars { ink, width, points, .. } => {
+            for &[x, y] in points {
+                let corners = [
+                    frame.at([x - 0.5 * width, frame.panel.y.low]),
+                    frame.at([x + 0.5 * width, y.clamp(frame.panel.y.low, frame.panel.y.high)]),
+                ];
+                area.draw(&Rectangle::new(corners, colour(*ink).mix(0.45).filled()))?;
+            }
+        }
+        Item::Shade { .. } => {}
+        Item::Arrow { ink, from, to } => draw_arrow(frame.at(*from), frame.at(*to), *ink, area)?,
+        Item::Text { ink, at, side, text } => {
+            let gap = (4.0 * PT) as i32;
+            let (x, y) = frame.at(*at);
+            let (at, horizontal, vertical) = match side {
+                Side::Left => ((x - gap, y), HPos::Right, VPos::Center),
+                Side::Right => ((x + gap, y), HPos::Left, VPos::Center),
+                Side::Above => ((x, y - gap), HPos::Center, VPos::Bottom),
+                Side::Below => ((x, y + gap), HPos::Center, VPos::Top),
+                Side::Centre => ((x, y), HPos::Center, VPos::Center),
+            };
+            area.draw(&Text::new(text.clone(), at, font(8.0, &dark(*ink), horizontal, vertical)))?;
+        }
+    }
+    Ok(())
+}
+
+fn draw_marker((x, y): (i32, i32), ink: Ink, marker: Marker, area: &Area<'_>) -> Drawn {
+    let colour = colour(ink);
+    let radius = (2.2 * PT) as i32;
+    let line = colour.stroke_width((0.9 * PT) as u32);
+    match marker {
+        Marker::Disc => area.draw(&Circle::new((x, y), radius, colour.filled())),
+        Marker::Ring => area.draw(&Circle::new((x, y), radius, line)),
+        Marker::Square => {
+            area.draw(&Rectangle::new([(x - radius, y - radius), (x + radius, y + radius)], colour.filled()))
+        }
+        Marker::Triangle => {
+            let corners =
+                vec![(x, y - radius - radius / 3), (x + radius, y + radius), (x - radius, y + radius)];
+            area.draw(&Polygon::new(corners, colour))
+        }
+        Marker::Cross => {
+            area.draw(&PathElement::new(vec![(x - radius, y - radius), (x + radius, y + radius)], line))?;
+            area.draw(&PathElement::new(vec![(x - radius, y + radius), (x + radius, y - radius)], line))
+        }
+    }
+}
+
+fn draw_arrow(from: (i32, i32), to: (i32, i32), ink: Ink, area: &Area<'_>) -> Drawn {
+    let (dx, dy) = (f64::from(to.0 - from.0), f64::from(to.1 - from.1));
+    let length = dx.hypot(dy).max(1.0);
+    let (ux, uy) = (dx / length, dy / length);
+    let corner = |back: f64, aside: f64| {
+        let x = f64::from(to.0) - back * ux - aside * uy;
+        let y = f64::from(to.1) - back * uy + aside * ux;
+        (x.round() as i32, y.round() as i32)
+    };
+    area.draw(&PathElement::new(vec![from, corner(4.0 * PT, 0.0)], stroke(ink)))?;
+    let head = vec![to, corner(6.0 * PT, 2.4 * PT), corner(6.0 * PT, -2.4 * PT)];
+    area.draw(&Polygon::new(head, colour(ink)))
+}
+
+fn colour(ink: Ink) -> RGBColor {
+    match ink {
+        Ink::Blue => RGBColor(0x00, 0x72, 0xb2),
+        Ink::Vermilion => RGBColor(0xd5, 0x5e, 0x00),
+        Ink::Green => RGBColor(0x00, 0x9e, 0x73),
+        Ink::Purple => RGBColor(0xcc, 0x79, 0xa7),
+        Ink::Black => INK,
+        Ink::Grey => GREY,
+    }
+}
+
+/// The colour for text, dark enough to read on white.
+fn dark(ink: Ink) -> RGBColor {
+    let RGBColor(r, g, b) = colour(ink);
+    let darker = |c: u8| (f64::from(c) * 0.75) as u8;
+    RGBColor(darker(r), darker(g), darker(b))
+}
+
+fn stroke(ink: Ink) -> ShapeStyle {
+    let (width, [dashed, dash_dot, dotted]) = (1.3, DASHES.map(|(opacity, _)| opacity));
+    let (width, opacity) = match ink {
+        Ink::Blue => (width, 1.0),
+        Ink::Vermilion => (width, dashed),
+        Ink::Green => (width, dash_dot),
+        Ink::Purple => (width, dotted),
+        Ink::Black | Ink::Grey => (0.6, 1.0),
+    };
+    colour(ink).mix(opacity).stroke_width((width * PT) as u32)
+}
+
+fn font(points: f64, colour: &RGBColor, horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
+    // plotters writes sizes divided by 1.24
+    let size = points * PT * 1.24;
+    FontDesc::new(FontFamily::SansSerif, size, FontStyle::Normal)
+        .color(colour)
+        .pos(Pos::new(horizontal, vertical))
+}
+
+fn bold(points: f64, colour: &RGBColor) -> TextStyle<'static> {
+    let size = points * PT * 1.24;
+    FontDesc::new(FontFamily::SansSerif, size, FontStyle::Bold)
+        .color(colour)
+        .pos(Pos::new(HPos::Left, VPos::Top))
+}
+
+/// Gives the document its size in mm, title and description, dashes, and text a white edge that keeps lines off it.
+fn finish(plot: &Plot, name: &str, svg: &str) -> String {
+    let (width, height) = (plot.width.millimetres(), plot.height_mm);
+    let body = svg.split_once('>').map_or("", |(_, body)| body);
+    let view = format!("0 0 {} {}", (width * MM) as u32, (height * MM) as u32);
+    let mut body = body
+        .replace(" opacity=\"1\"", "")
+        .replace(" \"/>", "\"/>")
+        .replace("<text ", "<text stroke=\"#FFFFFF\" stroke-width=\"24\" paint-order=\"stroke\" ");
+    for (opacity, pattern) in DASHES {
+        body = body.replace(&format!("opacity=\"{opacity}\""), &format!("stroke-dasharray=\"{pattern}\""));
+    }
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"{view}\" \
+         stroke-linejoin=\"round\" role=\"img\" aria-labelledby=\"{name}-title {name}-desc\">\n\
+         <title id=\"{name}-title\">{}</title>\n<desc id=\"{name}-desc\">{}</desc>{body}",
+        escape(&plot.title),
+        escape(&plot.description),
+    )
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn segments_are_clipped_to_the_unit_square() {
+        assert_eq!(clip_segment([0.2, 0.2], [0.8, 0.4]), Some([[0.2, 0.2], [0.8, 0.4]]));
+        assert_eq!(clip_segment([-1.0, 0.5], [3.0, 0.5]), Some([[0.0, 0.5], [1.0, 0.5]]));
+        assert_eq!(clip_segment([0.5, 0.5], [0.5, 2.5]), Some([[0.5, 0.5], [0.5, 1.0]]));
+        assert_eq!(clip_segment([2.0, 0.0], [2.0, 1.0]), None);
+        assert_eq!(clip_segment([-1.0, 0.9], [0.5, 2.4]), None);
+        assert_eq!(clip_segment([0.5, 0.5], [f64::INFINITY, 0.5]), None);
+        assert_eq!(clip_segment([0.5, 0.5], [0.5, f64::NAN]), None);
+    }
+}

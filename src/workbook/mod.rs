@@ -1,0 +1,155 @@
+//! The table of questions, the options that all examples share, and how answers are printed, written as JSON and put on a page.
+//!
+//! An example is a function from [`Options`] to [`Answer`]s and a one-line `main`:
+//!
+//! ```no_run
+//! use unbiased::workbook::{self, Answer, Options};
+//! use unbiased::{Result, inversion::Exponential};
+//!
+//! pub fn answer(options: &Options) -> Result<Vec<Answer>> {
+//!     let exponential = Exponential::new(options.number("rate"))?;
+//!     let outcome = options.run(&exponential, 1_000_000)?;
+//!     Ok(vec![Answer::new("1.1", "mean of X").truth(exponential.mean()).outcome(&outcome)])
+//! }
+//!
+//! fn main() -> std::process::ExitCode {
+//!     workbook::main("1.1", answer)
+//! }
+//! ```
+
+mod answer;
+mod options;
+mod page;
+mod print;
+mod section1;
+mod section2;
+mod section3;
+mod section5;
+
+use std::process::ExitCode;
+
+pub use answer::{Answer, Kind};
+pub use options::Options;
+
+use crate::error::{Error, Result};
+use crate::figure::{Edition, write_whole};
+use options::Request;
+
+/// One question of the worksheet, with all that is known about it before anything is run.
+///
+/// Texts are plain; `latex` is LaTeX, shown on the page.
+#[derive(Debug, Clone, Copy)]
+pub struct Question {
+    /// The worksheet's number.
+    pub id: &'static str,
+    /// A few words, which do not tell the answer.
+    pub title: &'static str,
+    /// What is asked.
+    pub statement: &'static str,
+    /// The closed form in a line of plain text.
+    pub formula: &'static str,
+    /// The same in LaTeX, a displayed formula each.
+    pub latex: &'static [&'static str],
+    /// Why it is so, in a paragraph.
+    pub answer: &'static str,
+    /// What people answer instead.
+    pub wrong: &'static [Wrong],
+    /// Where the sheet as it was handed out needs correcting.
+    pub on_the_original: Option<&'static str>,
+    /// The file in `examples/`, without `.rs`.
+    pub example: &'static str,
+    /// The module that holds its estimators.
+    pub module: &'static str,
+    /// Its own options.
+    pub parameters: &'static [Parameter],
+}
+
+/// A classic wrong answer.
+#[derive(Debug, Clone, Copy)]
+pub struct Wrong {
+    /// What is answered.
+    pub answer: &'static str,
+    /// The slip that leads there.
+    pub slip: &'static str,
+}
+
+/// A numeric option of one question: `--name value`.
+#[derive(Debug, Clone, Copy)]
+pub struct Parameter {
+    /// Its name on the command line, without the dashes.
+    pub name: &'static str,
+    /// Its value where none is given.
+    pub default: f64,
+    /// What it is, with its domain.
+    pub help: &'static str,
+}
+
+/// All questions, in the worksheet's order.
+pub fn questions() -> impl Iterator<Item = &'static Question> {
+    [section1::QUESTIONS, section2::QUESTIONS, section3::QUESTIONS, section5::QUESTIONS].into_iter().flatten()
+}
+
+/// The question with this number.
+///
+/// # Errors
+/// If there is none.
+pub fn question(id: &str) -> Result<&'static Question> {
+    questions()
+        .find(|question| question.id == id)
+        .ok_or_else(|| Error::Usage(format!("there is no question {id}")))
+}
+
+/// What an example does: answers to its question, with the options given.
+pub type AnswerFn = fn(&Options) -> Result<Vec<Answer>>;
+
+/// An example's `main`: reads the command line, answers the question, prints the answers and saves their figures.
+pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
+    ended(question(id).and_then(|question| {
+        let Request::Run(options) = Request::read(&[question])? else { return print::help(&[question]) };
+        let options = options.for_question(question);
+        options.with_out(|| print::answers(question, &answer(&options)?, &options))
+    }))
+}
+
+/// The worksheet's `main`: answers all these questions, and writes `index.html` with all of it.
+pub fn worksheet(answers: &[(&str, AnswerFn)]) -> ExitCode {
+    let asked = answers.iter().map(|(id, answer)| Ok((question(id)?, *answer))).collect::<Result<Vec<_>>>();
+    ended(asked.and_then(|asked| {
+        let questions: Vec<_> = asked.iter().map(|(question, _)| *question).collect();
+        let Request::Run(options) = Request::read(&questions)? else { return print::help(&questions) };
+        options.with_out(|| {
+            let mut answered = Vec::new();
+            for (question, answer) in &asked {
+                let options = options.for_question(question);
+                let rows = answer(&options)?;
+                print::answers(question, &rows, &options)?;
+                answered.push((*question, rows));
+            }
+            let path = options.out.join("index.html");
+            write_whole(&path, page::page(&answered, &options)?.as_bytes())?;
+            print::page(&path, &options)
+        })
+    }))
+}
+
+/// 0 for success, 2 for bad arguments, 1 for a failed run; the reason on standard error, in one sentence.
+fn ended(result: Result<()>) -> ExitCode {
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            match error {
+                Error::Usage(_)
+                | Error::Parameter { .. }
+                | Error::Count { .. }
+                | Error::TooFewDraws { .. } => ExitCode::from(2),
+                _ => ExitCode::FAILURE,
+            }
+        }
+    }
+}
+
+/// Whether an answer may be shown in this edition.
+fn shown(answer: &Answer, edition: Edition) -> bool {
+    edition == Edition::Solution || answer.kind() == Kind::Answer
+}

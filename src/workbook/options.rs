@@ -1,0 +1,208 @@
+//! The command line that all examples share.
+
+use std::cell::OnceCell;
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use lexopt::{Arg, Parser};
+
+use super::Question;
+use crate::error::{Error, Result};
+use crate::figure::Edition;
+use crate::run::{Budget, Estimator, Outcome, Run};
+
+/// The options of an example.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Draws to take instead of each question's own number.
+    pub draws: Option<u64>,
+    /// The seed of every random number; 1 if none is given.
+    pub seed: u64,
+    /// Threads to run on; one a core if none is given. The results are the same.
+    pub threads: Option<usize>,
+    /// Where figures and pages go; `worksheet/` if none is given.
+    pub out: PathBuf,
+    /// One JSON object a line instead of text.
+    pub json: bool,
+    /// For whom.
+    pub edition: Edition,
+    given: Vec<(String, f64)>,
+    question: Option<&'static Question>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            draws: None,
+            seed: 1,
+            threads: None,
+            out: PathBuf::from("worksheet"),
+            json: false,
+            edition: Edition::Solution,
+            given: Vec::new(),
+            question: None,
+        }
+    }
+}
+
+/// What the command line asks for.
+pub(super) enum Request {
+    Help,
+    Run(Options),
+}
+
+impl Request {
+    /// Reads this program's command line, with the options of these questions beside the common ones.
+    pub fn read(questions: &[&'static Question]) -> Result<Self> {
+        Self::parse(Parser::from_env(), questions)
+    }
+
+    pub fn parse(mut line: Parser, questions: &[&'static Question]) -> Result<Self> {
+        let usage = |error: lexopt::Error| Error::Usage(error.to_string());
+        let mut options = Options::default();
+        while let Some(argument) = line.next().map_err(usage)? {
+            let name = match argument {
+                Arg::Short('h') => return Ok(Self::Help),
+                Arg::Long(name) => name.to_owned(),
+                other => return Err(usage(other.unexpected())),
+            };
+            match name.as_str() {
+                "help" => return Ok(Self::Help),
+                "json" => options.json = true,
+                "draws" => options.draws = Some(count(&mut line, "--draws")?),
+                "seed" => options.seed = whole(&mut line, "--seed")?,
+                "threads" => options.threads = Some(count(&mut line, "--threads")? as usize),
+                "out" => options.out = line.value().map_err(usage)?.into(),
+                "edition" => options.edition = edition(&text(&mut line, "--edition")?)?,
+                _ => {
+                    let known = questions.iter().flat_map(|question| question.parameters);
+                    if !known.into_iter().any(|parameter| parameter.name == name) {
+                        return Err(Error::Usage(format!("there is no option --{name}; --help lists them")));
+                    }
+                    let given = text(&mut line, &format!("--{name}"))?;
+                    let value = given
+                        .parse()
+                        .map_err(|_| Error::Usage(format!("--{name} takes a number, not \"{given}\"")))?;
+                    options.given.push((name, value));
+                }
+            }
+        }
+        Ok(Self::Run(options))
+    }
+}
+
+fn text(line: &mut Parser, name: &str) -> Result<String> {
+    let value = line.value().map_err(|error| Error::Usage(error.to_string()))?;
+    value.into_string().map_err(|_| Error::Usage(format!("the value of {name} is not text")))
+}
+
+fn whole(line: &mut Parser, name: &str) -> Result<u64> {
+    let given = text(line, name)?;
+    given.parse().map_err(|_| Error::Usage(format!("{name} takes a whole number, not \"{given}\"")))
+}
+
+fn count(line: &mut Parser, name: &str) -> Result<u64> {
+    match whole(line, name)? {
+        0 => Err(Error::Usage(format!("{name} takes a positive whole number, not 0"))),
+        count => Ok(count),
+    }
+}
+
+fn edition(name: &str) -> Result<Edition> {
+    match name {
+        "student" => Ok(Edition::Student),
+        "solution" => Ok(Edition::Solution),
+        _ => Err(Error::Usage(format!("--edition is student or solution, not \"{name}\""))),
+    }
+}
+
+impl Options {
+    /// The same options, with the defaults of this question's own parameters.
+    pub fn for_question(&self, question: &'static Question) -> Self {
+        Self { question: Some(question), ..self.clone() }
+    }
+
+    /// The value of the question's own option `name`: as given, or its default. NaN if the question has no such option.
+    pub fn number(&self, name: &str) -> f64 {
+        let given = self.given.iter().rev().find(|(given, _)| given == name);
+        let parameters = self.question.map_or(&[][..], |question| question.parameters);
+        let default = || parameters.iter().find(|parameter| parameter.name == name);
+        given
+            .map(|(_, value)| *value)
+            .or_else(|| default().map(|parameter| parameter.default))
+            .unwrap_or(f64::NAN)
+    }
+
+    /// The same where only a whole number ≥ 0 will do.
+    ///
+    /// # Errors
+    /// If it is anything else.
+    pub fn whole_number(&self, name: &'static str) -> Result<u64> {
+        let value = self.number(name);
+        if value >= 0.0 && value < u64::MAX as f64 && value.fract() == 0.0 {
+            Ok(value as u64)
+        } else {
+            Err(Error::Usage(format!("--{name} takes a whole number, not {value}")))
+        }
+    }
+
+    /// Runs an estimator as the options say, `draws` times where they do not, with a progress bar on a terminal.
+    ///
+    /// # Errors
+    /// Those of [`Run::estimate`].
+    pub fn run(&self, estimator: &(impl Estimator + ?Sized), draws: u64) -> Result<Outcome> {
+        let start = Instant::now();
+        let bar = OnceCell::new();
+        let watched = std::io::stderr().is_terminal() && !self.json;
+        let progress = |done: u64, total: Option<u64>| {
+            if watched && start.elapsed() > Duration::from_secs(1) {
+                bar.get_or_init(|| progress_bar(total)).set_position(done);
+            }
+        };
+        let mut run = Run::new(self.seed).progress(&progress);
+        if let Some(threads) = self.threads {
+            run = run.threads(threads);
+        }
+        let outcome = run.estimate(estimator, Budget::Draws(self.draws.unwrap_or(draws)));
+        if let Some(bar) = bar.get() {
+            bar.finish_and_clear();
+        }
+        outcome
+    }
+
+    /// Does what needs the folder for figures and pages: the folder is made first, before anything is computed for it, and goes
+    /// away again if nothing came of it.
+    pub(super) fn with_out(&self, work: impl FnOnce() -> Result<()>) -> Result<()> {
+        let was_there = self.out.exists();
+        std::fs::create_dir_all(&self.out).map_err(|error| Error::Write {
+            path: self.out.display().to_string(),
+            reason: error.to_string(),
+        })?;
+        work().inspect_err(|_| {
+            if !was_there {
+                // fails, as it should, if there is something in it
+                let _ = std::fs::remove_dir(&self.out);
+            }
+        })
+    }
+
+    /// The command that repeats this answer.
+    pub(super) fn command(&self, question: &Question) -> String {
+        let mut command = format!("cargo run --release --example {} --", question.example);
+        for parameter in question.parameters {
+            command += &format!(" --{} {}", parameter.name, self.number(parameter.name));
+        }
+        if let Some(draws) = self.draws {
+            command += &format!(" --draws {draws}");
+        }
+        command + &format!(" --seed {}", self.seed)
+    }
+}
+
+fn progress_bar(total: Option<u64>) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:40} {human_pos} of {human_len} draws, {eta} to go");
+    let bar = ProgressBar::new(total.unwrap_or(0));
+    style.map(|style| bar.clone().with_style(style)).unwrap_or(bar)
+}

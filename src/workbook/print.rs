@@ -1,0 +1,191 @@
+//! Answers on standard output: text for people, JSON Lines for programs.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::{Answer, Kind, Options, Question, shown};
+use crate::error::{Error, Result};
+use crate::figure::Edition;
+
+/// Prints the answers to one question and saves their figures.
+pub(super) fn answers(question: &Question, answers: &[Answer], options: &Options) -> Result<()> {
+    let mut rows = Vec::new();
+    for answer in answers.iter().filter(|answer| shown(answer, options.edition)) {
+        let mut paths = Vec::new();
+        for figure in answer.figures(options.edition) {
+            paths.extend(figure.save(&options.out)?);
+        }
+        rows.push((answer, paths));
+    }
+    let printed = if options.json {
+        rows.iter().try_for_each(|(answer, paths)| json(answer, paths, options))
+    } else {
+        text(question, &rows, options)
+    };
+    printed.or_else(until_the_pipe_closes)
+}
+
+/// The last line of the worksheet: where its page is.
+pub(super) fn page(path: &Path, options: &Options) -> Result<()> {
+    if options.json {
+        return Ok(());
+    }
+    writeln!(io::stdout(), "\nAll of it on one page: {}", path.display()).or_else(until_the_pipe_closes)
+}
+
+/// A reader that has seen enough is no error; a full disk is.
+fn until_the_pipe_closes(error: io::Error) -> Result<()> {
+    match error.kind() {
+        io::ErrorKind::BrokenPipe => Ok(()),
+        _ => Err(Error::Write { path: "standard output".into(), reason: error.to_string() }),
+    }
+}
+
+#[derive(Serialize)]
+struct Row<'a> {
+    question: &'a str,
+    what: &'a str,
+    kind: Kind,
+    parameters: serde_json::Map<String, serde_json::Value>,
+    truth: Option<f64>,
+    estimate: Option<f64>,
+    std_error: Option<f64>,
+    draws: Option<u64>,
+    seed: Option<u64>,
+    seconds: Option<f64>,
+    figures: &'a [PathBuf],
+}
+
+fn json(answer: &Answer, figures: &[PathBuf], options: &Options) -> io::Result<()> {
+    let told = options.edition == Edition::Solution;
+    let estimate = answer.estimate().filter(|_| told);
+    let parameters = answer.parameters().iter().map(|(name, value)| ((*name).into(), (*value).into()));
+    let row = Row {
+        question: answer.question(),
+        what: answer.what(),
+        kind: answer.kind(),
+        parameters: parameters.collect(),
+        truth: answer.exact().filter(|_| told),
+        estimate: answer.found().filter(|_| told),
+        std_error: estimate.and_then(|estimate| estimate.std_error()),
+        draws: estimate.map(|estimate| estimate.draws()),
+        seed: answer.seed().filter(|_| told),
+        seconds: answer.seconds().filter(|_| told),
+        figures,
+    };
+    writeln!(io::stdout(), "{}", serde_json::to_string(&row)?)
+}
+
+fn text(question: &Question, rows: &[(&Answer, Vec<PathBuf>)], options: &Options) -> io::Result<()> {
+    let out = &mut io::stdout().lock();
+    writeln!(out, "\n{}  {}\n", question.id, question.title)?;
+    wrapped(out, question.statement)?;
+    if options.edition == Edition::Solution {
+        writeln!(out, "\n    closed form  {}", question.formula)?;
+    }
+    for (answer, paths) in rows {
+        if options.edition == Edition::Solution {
+            writeln!(out)?;
+            solution(out, answer)?;
+        }
+        for svg in paths.iter().filter(|path| path.extension().is_some_and(|ending| ending == "svg")) {
+            writeln!(out, "    figure       {}", svg.display())?;
+        }
+    }
+    writeln!(out, "\n    again        {}", options.command(question))
+}
+
+fn solution(out: &mut impl Write, answer: &Answer) -> io::Result<()> {
+    write!(out, "    {}  {}", answer.question(), answer.what())?;
+    for (name, value) in answer.parameters() {
+        write!(out, ", {name} = {value}")?;
+    }
+    writeln!(out)?;
+    if let Some(truth) = answer.exact() {
+        writeln!(out, "        truth    {truth}")?;
+    }
+    if let Some(estimate) = answer.estimate() {
+        write!(out, "        estimate {} (95 %)", interval(answer))?;
+        if let Some(z) = answer.z() {
+            write!(out, "   z = {z:.2}")?;
+        }
+        match answer.agrees() {
+            Some(true) => write!(out, "   ✓")?,
+            Some(false) => write!(out, "   ✗")?,
+            None => {}
+        }
+        let cost = answer.cost();
+        write!(out, "\n        cost     {} draws, {} random numbers", estimate.draws(), cost.random_numbers)?;
+        if cost.evaluations > 0 {
+            write!(out, ", {} evaluations", cost.evaluations)?;
+        }
+        let seed = answer.seed().unwrap_or_default();
+        writeln!(out, ", {:.3} s, seed {seed}", answer.seconds().unwrap_or_default())?;
+    } else if let Some(value) = answer.found() {
+        writeln!(out, "        found    {value}")?;
+    }
+    if let Some(note) = answer.sentence() {
+        wrapped(out, note)?;
+    }
+    Ok(())
+}
+
+/// `mean ± half-width` of the 95 % interval
+pub(super) fn interval(answer: &Answer) -> String {
+    let Some(estimate) = answer.estimate() else { return String::new() };
+    match estimate.confidence_interval(0.95) {
+        Ok([low, high]) => {
+            let reach = 0.5 * (high - low);
+            let places =
+                if reach > 0.0 { (1.0 - reach.log10().floor()).clamp(0.0, 17.0) as usize } else { 6 };
+            if (1e-12..1e12).contains(&reach) && estimate.mean().abs() < 1e15 || reach == 0.0 {
+                format!("{:.places$} ± {reach:.places$}", estimate.mean())
+            } else {
+                format!("{:e} ± {reach:.1e}", estimate.mean())
+            }
+        }
+        Err(_) => estimate.to_string(),
+    }
+}
+
+/// Text in lines of at most 96 characters, indented.
+fn wrapped(out: &mut impl Write, text: &str) -> io::Result<()> {
+    let mut line = String::from("   ");
+    for word in text.split_whitespace() {
+        if line.chars().count() + 1 + word.chars().count() > 96 {
+            writeln!(out, "{line}")?;
+            line = String::from("   ");
+        }
+        line.push(' ');
+        line.push_str(word);
+    }
+    writeln!(out, "{line}")
+}
+
+/// `--help`
+pub(super) fn help(questions: &[&Question]) -> Result<()> {
+    let mut text = String::new();
+    if let [question] = questions {
+        text += &format!("{}  {}\n\n{}\n\n", question.id, question.title, question.statement);
+    } else {
+        text += "The worksheet: every question in closed form, by an estimator with its error bar, and in a picture.\n\n";
+    }
+    text += "Options
+    --draws N            draws of every estimator (default: each question's own number)
+    --seed S             seed of all random numbers (1)
+    --threads T          threads (one a core; the results are the same for any number)
+    --out DIR            folder for figures and pages (worksheet)
+    --json               one JSON object a line
+    --edition NAME       student or solution (solution)
+";
+    for question in questions {
+        for parameter in question.parameters {
+            let option = format!("--{} X", parameter.name);
+            let owner = if questions.len() > 1 { format!("{}: ", question.id) } else { String::new() };
+            text += &format!("    {option:<20} {owner}{} ({})\n", parameter.help, parameter.default);
+        }
+    }
+    write!(io::stdout(), "{text}").or_else(until_the_pipe_closes)
+}

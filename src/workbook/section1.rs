@@ -1,0 +1,87 @@
+//! The questions of section 1, the inversion method.
+
+use super::{Parameter, Question, Wrong};
+
+const RATE: Parameter = Parameter { name: "rate", default: 1.0, help: "the rate λ > 0" };
+
+pub(super) const QUESTIONS: &[Question] = &[
+    Question {
+        id: "1.1",
+        title: "Sampling the exponential distribution",
+        statement: "U is uniform on [0, 1). Which function of U is a sample of the exponential distribution with rate λ, whose density is \
+                    p(x) = λ e^(−λx) for x ≥ 0? And how is any other one-dimensional distribution sampled, given its cdf F?",
+        formula: "x = F⁻¹(u) = −ln(1 − u)/λ;  E[X] = 1/λ, Var X = 1/λ²",
+        latex: &[
+            r"F(x) = \int_0^x \lambda e^{-\lambda t}\,dt = 1 - e^{-\lambda x}",
+            r"x = F^{-1}(u) = -\frac{\ln(1-u)}{\lambda}",
+            r"F^-(u) = \inf\{x : F(x) \ge u\}",
+        ],
+        answer: "Set F(x) = u and solve for x. A uniform number lands between F(x) and F(x + dx) with probability p(x) dx, which is what \
+                 sampling p means. Where F has no inverse in closed form, or has jumps and flats, F⁻(u) = inf{x : F(x) ≥ u} \
+                 takes its place and is found by bisection.",
+        wrong: &[
+            Wrong {
+                answer: "−λ ln(1 − U)",
+                slip: "multiplied by λ: invisible at λ = 1, a mean of λ instead of 1/λ elsewhere",
+            },
+            Wrong { answer: "ln(1 − U)/λ", slip: "the sign forgotten: all samples are negative" },
+            Wrong {
+                answer: "−log₁₀(1 − U)/λ",
+                slip: "the wrong logarithm: every sample is 0.434 times what it should be",
+            },
+            Wrong { answer: "λ e^(−λU)", slip: "U put into the density instead of the inverse cdf" },
+        ],
+        on_the_original: Some(
+            "The original takes U from [0, 1], where U = 1 would give an infinite sample: U lies in [0, 1). It also writes F⁻¹(x); the \
+             argument of an inverse cdf is a probability, u.",
+        ),
+        example: "q1_1_exponential",
+        module: "inversion",
+        parameters: &[RATE],
+    },
+    Question {
+        id: "1.2",
+        title: "One sample, read off the graph",
+        statement: "For λ = 1 the graphs show the CDF, the inverse CDF and the PDF. If U = 0.75, which value is sampled? Mark the point on the CDF.",
+        formula: "x = −ln(1 − 0.75) = ln 4 = 1.386294, where p(x) = 0.25",
+        latex: &[r"x = -\ln(1 - 0.75) = \ln 4 \approx 1.386294", r"p(x) = e^{-\ln 4} = 0.25"],
+        answer: "Start at 0.75 on the vertical axis of the CDF, go across to the curve and down to x. The same point lies on the inverse \
+                 CDF, above u = 0.75.",
+        wrong: &[
+            Wrong {
+                answer: "0.288",
+                slip: "−ln U instead of −ln(1 − U): a sample too, but not the point on this CDF",
+            },
+            Wrong { answer: "0.602", slip: "logarithm to base 10" },
+            Wrong { answer: "0.528", slip: "F read at x = 0.75 instead of inverted" },
+            Wrong { answer: "0.472", slip: "p read at x = 0.75" },
+        ],
+        on_the_original: Some(
+            "F and p take x, F⁻¹ takes u: the inverse is drawn against an axis of its own here.",
+        ),
+        example: "q1_2_one_sample",
+        module: "inversion",
+        parameters: &[RATE, Parameter { name: "u", default: 0.75, help: "the uniform number u in [0, 1]" }],
+    },
+    Question {
+        id: "1.3",
+        title: "The axes of a CDF",
+        statement: "What does the x-axis of the CDF's (blue) curve stand for?",
+        formula: "x: a value that can be sampled; F(x): the probability of a sample at most x",
+        latex: &[r"F(x) = P(X \le x)"],
+        answer: "The values that can be sampled, here all x ≥ 0. The height of the curve is the probability that a sample is at most x.",
+        wrong: &[
+            Wrong {
+                answer: "a probability",
+                slip: "that is the vertical axis, or the horizontal one of F⁻¹",
+            },
+            Wrong { answer: "the random number U", slip: "U lives on the vertical axis of F" },
+        ],
+        on_the_original: Some(
+            "The same letter x stands for a value in F(x) and for a probability in F⁻¹(x) there; here that is u.",
+        ),
+        example: "q1_3_axes",
+        module: "inversion",
+        parameters: &[RATE],
+    },
+];

@@ -1,0 +1,389 @@
+//! Every example runs, prints JSON that parses, agrees with its truths, and says clearly what it does not understand.
+
+mod common;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+use serde_json::Value;
+
+const KEYS: [&str; 11] = [
+    "question",
+    "what",
+    "kind",
+    "parameters",
+    "truth",
+    "estimate",
+    "std_error",
+    "draws",
+    "seed",
+    "seconds",
+    "figures",
+];
+
+/// A folder of this test's own under the build's.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    folder
+}
+
+fn run(example: &str, arguments: &[&str]) -> Output {
+    // cargo puts examples beside the folder of the tests, and builds them before it runs any
+    let tests = std::env::current_exe().unwrap();
+    let program = tests.parent().and_then(Path::parent).unwrap().join("examples").join(example);
+    Command::new(&program)
+        .args(arguments)
+        .output()
+        .unwrap_or_else(|error| panic!("{}: {error}", program.display()))
+}
+
+/// The question examples, by their files.
+fn examples() -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let names = files.filter(|path| path.extension().is_some_and(|ending| ending == "rs"));
+    let mut names: Vec<_> =
+        names.map(|path| path.file_stem().unwrap().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+fn rows(output: &Output) -> Vec<Value> {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout.clone()).unwrap();
+    text.lines()
+        .map(|line| serde_json::from_str(line).unwrap_or_else(|error| panic!("{error}: {line}")))
+        .collect()
+}
+
+/// The whole worksheet, run once for all tests.
+fn worksheet() -> &'static (PathBuf, Vec<Value>) {
+    static ONCE: OnceLock<(PathBuf, Vec<Value>)> = OnceLock::new();
+    ONCE.get_or_init(|| {
+        let out = folder("worksheet");
+        let output = run("worksheet", &["--json", "--out", out.to_str().unwrap()]);
+        (out, rows(&output))
+    })
+}
+
+fn student() -> &'static (PathBuf, Vec<Value>, String) {
+    static ONCE: OnceLock<(PathBuf, Vec<Value>, String)> = OnceLock::new();
+    ONCE.get_or_init(|| {
+        let out = folder("student");
+        let arguments = ["--edition", "student", "--out", out.to_str().unwrap()];
+        let json = run("worksheet", &[&arguments[..], &["--json"]].concat());
+        let text = run("worksheet", &arguments);
+        (out.clone(), rows(&json), String::from_utf8(text.stdout).unwrap())
+    })
+}
+
+fn without_seconds(mut row: Value) -> Value {
+    row.as_object_mut().unwrap().remove("seconds");
+    row
+}
+
+#[test]
+fn the_worksheet_takes_in_every_example() {
+    let of_examples: BTreeSet<String> = examples().iter().map(|name| name[1..4].replace('_', ".")).collect();
+    let (_, rows) = worksheet();
+    let of_rows: BTreeSet<String> =
+        rows.iter().map(|row| row["question"].as_str().unwrap()[..3].to_owned()).collect();
+    assert_eq!(of_examples, of_rows);
+    let of_table: BTreeSet<String> =
+        unbiased::workbook::questions().map(|question| question.id.to_owned()).collect();
+    assert_eq!(of_examples, of_table);
+    for question in unbiased::workbook::questions() {
+        assert!(examples().contains(&question.example.to_owned()), "{}", question.example);
+    }
+}
+
+#[test]
+fn every_row_has_all_keys_and_every_answer_its_truth() {
+    let (_, rows) = worksheet();
+    assert!(rows.len() >= 30);
+    for row in rows {
+        let object = row.as_object().unwrap();
+        assert_eq!(object.keys().collect::<BTreeSet<_>>(), KEYS.map(String::from).iter().collect(), "{row}");
+        assert!(["answer", "demonstration"].contains(&row["kind"].as_str().unwrap()));
+        assert!(row["parameters"].is_object() && row["figures"].is_array());
+        for figure in row["figures"].as_array().unwrap() {
+            assert!(fs::metadata(figure.as_str().unwrap()).unwrap().len() > 0, "{figure}");
+        }
+        if let Some(std_error) = row["std_error"].as_f64() {
+            let (estimate, draws) = (row["estimate"].as_f64().unwrap(), row["draws"].as_u64().unwrap());
+            assert!(draws > 0 && row["seed"].as_u64() == Some(1) && row["seconds"].as_f64().unwrap() >= 0.0);
+            if row["kind"] == "answer" {
+                let truth = row["truth"].as_f64().unwrap();
+                let rounding = 8.0 * f64::EPSILON * truth.abs();
+                assert!((estimate - truth).abs() <= 4.0 * std_error + rounding, "z beyond 4: {row}");
+            }
+        } else if let (Some(estimate), Some(truth)) = (row["estimate"].as_f64(), row["truth"].as_f64()) {
+            // found numerically, not estimated
+            assert!((estimate - truth).abs() <= 1e-12 * truth.abs(), "{row}");
+        }
+    }
+}
+
+#[test]
+fn each_example_alone_says_what_the_worksheet_says() {
+    let (_, all) = worksheet();
+    for example in examples() {
+        let id = example[1..4].replace('_', ".");
+        let out = folder(&example);
+        let alone = rows(&run(&example, &["--json", "--out", out.to_str().unwrap()]));
+        let mut expected = all.iter().filter(|row| row["question"].as_str().unwrap().starts_with(&id));
+        for row in alone {
+            let (mut here, mut there) =
+                (without_seconds(row), without_seconds(expected.next().unwrap().clone()));
+            let files = |row: &mut Value| {
+                let paths = row.as_object_mut().unwrap().remove("figures").unwrap();
+                let names = paths.as_array().unwrap().iter().map(|path| path.as_str().unwrap().to_owned());
+                names.map(PathBuf::from).collect::<Vec<_>>()
+            };
+            for (a, b) in files(&mut here).iter().zip(files(&mut there)) {
+                assert_eq!(a.file_name(), b.file_name());
+                assert!(fs::read(a).unwrap() == fs::read(&b).unwrap(), "{} differs", a.display());
+            }
+            assert_eq!(here, there);
+        }
+        assert!(expected.next().is_none());
+    }
+}
+
+#[test]
+fn the_number_of_threads_cannot_be_seen() {
+    let of = |example: &str, threads| {
+        let out = folder(&format!("threads-{example}-{threads}"));
+        let output = run(
+            example,
+            &["--json", "--draws", "100000", "--threads", threads, "--out", out.to_str().unwrap()],
+        );
+        let figures = |mut row: Value| {
+            row.as_object_mut().unwrap().remove("figures");
+            without_seconds(row)
+        };
+        rows(&output).into_iter().map(figures).collect::<Vec<_>>()
+    };
+    for example in ["q1_1_exponential", "q1_3_axes"] {
+        let one = of(example, "1");
+        for threads in ["2", "3", "8"] {
+            assert_eq!(of(example, threads), one);
+        }
+    }
+}
+
+#[test]
+fn the_worksheet_is_the_same_bytes_every_time() {
+    let files = |folder: &Path| -> BTreeMap<String, Vec<u8>> {
+        let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        paths
+            .map(|path| (path.file_name().unwrap().to_string_lossy().into_owned(), fs::read(path).unwrap()))
+            .collect()
+    };
+    let (first, _) = worksheet();
+    let again = folder("again");
+    rows(&run("worksheet", &["--json", "--out", again.to_str().unwrap()]));
+    let (first, again) = (files(first), files(&again));
+    assert_eq!(first.keys().collect::<Vec<_>>(), again.keys().collect::<Vec<_>>());
+    for (name, bytes) in &first {
+        assert!(again[name] == *bytes, "{name} differs");
+    }
+    // and as committed, where the repository is at hand
+    let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("figures");
+    if committed.exists() {
+        let committed = files(&committed);
+        for (name, bytes) in first.iter().filter(|(name, _)| name.ends_with(".svg") || name.ends_with(".csv"))
+        {
+            assert!(committed.get(name) == Some(bytes), "figures/{name} is not what is drawn now");
+        }
+    }
+}
+
+/// What a reader sees or hears of a page: its text without the tags, titles and descriptions included.
+fn text_of(html: &str) -> String {
+    let body = html.split_once("<body>").map_or(html, |(_, body)| body);
+    let mut text = String::new();
+    let mut inside = false;
+    for c in body.chars() {
+        match c {
+            '<' => inside = true,
+            '>' => {
+                inside = false;
+                text.push(' ');
+            }
+            c if !inside => text.push(c),
+            _ => {}
+        }
+    }
+    text
+}
+
+#[test]
+fn the_student_edition_contains_no_answer() {
+    let (out, rows, printed) = student();
+    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    let mut texts = vec![("page", text_of(&page)), ("terminal", printed.clone())];
+    for entry in fs::read_dir(out).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        assert!(name == "index.html" || name.contains("_student."), "{name}");
+        match path.extension().and_then(|ending| ending.to_str()) {
+            Some("svg") => texts.push(("figure", text_of(&fs::read_to_string(&path).unwrap()))),
+            Some("csv") => texts.push(("csv", fs::read_to_string(&path).unwrap())),
+            _ => {}
+        }
+    }
+    for row in rows {
+        for key in ["truth", "estimate", "std_error", "draws", "seed", "seconds"] {
+            assert!(row[key].is_null(), "{key} in {row}");
+        }
+        assert_eq!(row["kind"], "answer", "a demonstration names a mistake: {row}");
+        texts.push(("json", row["what"].as_str().unwrap().to_owned()));
+    }
+    let (_, solved) = worksheet();
+    for (place, text) in &texts {
+        for question in unbiased::workbook::questions() {
+            let wrong = question.wrong.iter().flat_map(|wrong| [wrong.slip]);
+            let secrets =
+                [question.formula, question.answer].into_iter().chain(question.on_the_original).chain(wrong);
+            for secret in secrets {
+                assert!(!text.contains(secret), "{}: the {place} says {secret:?}", question.id);
+            }
+        }
+        if *place == "csv" {
+            continue; // the curves to be marked have numbers of their own
+        }
+        // numbers that nobody would write by chance: four digits or more
+        let truths = solved.iter().filter_map(|row| row["truth"].as_f64());
+        for truth in truths.filter(|truth| (truth * 1000.0).fract().abs() > 1e-9) {
+            let shown = format!("{truth:.3}");
+            assert!(!text.contains(&shown), "the {place} says {shown}");
+        }
+    }
+    assert!(!page.contains("<math"), "formulas are answers");
+}
+
+#[test]
+fn the_page_has_everything_and_needs_nothing() {
+    let (out, rows) = worksheet();
+    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    for question in unbiased::workbook::questions() {
+        assert!(page.contains(&format!("id=\"q{}\"", question.id)), "{}", question.id);
+    }
+    for tag in ["<script", "<link", "<img", "<iframe", "@import", "url("] {
+        assert!(!page.contains(tag), "{tag}");
+    }
+    let drawn = rows.iter().flat_map(|row| row["figures"].as_array().unwrap());
+    let drawn = drawn.filter(|path| path.as_str().unwrap().ends_with(".svg")).count();
+    assert_eq!(page.matches("<svg").count(), drawn);
+    assert!(page.matches("<math").count() >= unbiased::workbook::questions().count());
+    // ids are unique, or titles and descriptions would be read out for the wrong figure
+    let ids: Vec<&str> = page.split(" id=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    assert_eq!(ids.iter().collect::<BTreeSet<_>>().len(), ids.len());
+}
+
+#[test]
+fn figures_are_accessible_and_sized_for_print() {
+    let (out, _) = worksheet();
+    let mut seen = 0;
+    for entry in fs::read_dir(out).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|ending| ending != "svg") {
+            continue;
+        }
+        seen += 1;
+        let svg = fs::read_to_string(&path).unwrap();
+        let name = path.display();
+        for part in ["<title ", "<desc ", "role=\"img\"", "aria-labelledby="] {
+            assert!(svg.contains(part), "{name}: {part}");
+        }
+        assert!(svg.contains("width=\"85mm\"") || svg.contains("width=\"170mm\""), "{name}");
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");
+        // 8 pt on a lattice of 960 to the inch is 106.7 units
+        for size in svg.split("font-size=\"").skip(1).filter_map(|rest| rest.split('"').next()) {
+            assert!(size.parse::<f64>().unwrap() >= 106.0, "{name}: text of {size} units");
+        }
+        let csv = fs::read_to_string(path.with_extension("csv")).unwrap();
+        assert!(csv.starts_with("panel,series,x,y,low,high\n") && csv.lines().count() > 1, "{name}");
+    }
+    assert!(seen >= 3, "{seen}");
+}
+
+#[test]
+fn bad_input_gets_one_sentence_an_exit_code_and_leaves_nothing_behind() {
+    for (example, arguments, code, part) in [
+        ("q1_1_exponential", &["--rate", "0"][..], 2, "the rate λ must be positive and finite, not 0"),
+        ("q1_1_exponential", &["--rate", "nan"], 2, "not NaN"),
+        ("q1_1_exponential", &["--rate", "inf"], 2, "not inf"),
+        ("q1_1_exponential", &["--rate", "fast"], 2, "--rate takes a number, not \"fast\""),
+        ("q1_1_exponential", &["--rate"], 2, "missing argument"),
+        ("q1_2_one_sample", &["--u", "1.5"], 2, "the probability u must be in [0, 1], not 1.5"),
+        ("q1_3_axes", &["--draws", "0"], 2, "--draws takes a positive whole number, not 0"),
+        ("q1_3_axes", &["--draws", "-5"], 2, "whole number"),
+        ("q1_3_axes", &["--draws", "1e6"], 2, "whole number"),
+        ("q1_3_axes", &["--threads", "0"], 2, "--threads takes a positive whole number"),
+        ("q1_3_axes", &["--seed", "x"], 2, "--seed takes a whole number"),
+        ("q1_3_axes", &["--edition", "teacher"], 2, "--edition is student or solution, not \"teacher\""),
+        ("q1_3_axes", &["--u", "0.5"], 2, "there is no option --u"),
+        ("q1_3_axes", &["solve"], 2, "unexpected argument"),
+        ("worksheet", &["--color"], 2, "there is no option --color"),
+    ] {
+        let out = folder("bad");
+        let output = run(example, &[&["--out", out.to_str().unwrap()], arguments].concat());
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{example} {arguments:?}: {message}");
+        assert!(
+            message.contains(part) && message.trim().lines().count() == 1,
+            "{example} {arguments:?}: {message}"
+        );
+        assert!(output.stdout.is_empty() && !out.exists(), "{example} {arguments:?}");
+    }
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_one_sentence() {
+    let file = folder("a-file");
+    fs::create_dir_all(file.parent().unwrap()).unwrap();
+    fs::write(&file, "not a folder").unwrap();
+    let inside = file.join("inside");
+    let output = run("q1_2_one_sample", &["--out", inside.to_str().unwrap()]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("could not be written") && message.trim().lines().count() == 1, "{message}");
+    assert!(output.stdout.is_empty());
+}
+
+#[test]
+fn help_lists_every_option() {
+    for (example, own) in [("q1_2_one_sample", &["--rate", "--u"][..]), ("worksheet", &["--rate", "--u"])] {
+        for flag in ["--help", "-h"] {
+            let output = run(example, &[flag]);
+            let text = String::from_utf8(output.stdout).unwrap();
+            assert!(output.status.success());
+            for option in ["--draws", "--seed", "--threads", "--out", "--json", "--edition"].iter().chain(own)
+            {
+                assert!(text.contains(option), "{example}: {option}");
+            }
+        }
+    }
+}
+
+#[test]
+fn people_see_the_interval_the_z_and_the_command_that_repeats_it() {
+    let out = folder("people");
+    let output = run(
+        "q1_1_exponential",
+        &["--rate", "2.5", "--draws", "5000", "--seed", "9", "--out", out.to_str().unwrap()],
+    );
+    let text = String::from_utf8(output.stdout).unwrap();
+    for part in ["closed form", "truth    0.4", "(95 %)", "z = ", "✓", "5000 draws", "seed 9", ".svg"] {
+        assert!(text.contains(part), "{part:?} is missing in\n{text}");
+    }
+    assert!(
+        text.contains("cargo run --release --example q1_1_exponential -- --rate 2.5 --draws 5000 --seed 9")
+    );
+}

@@ -1,0 +1,479 @@
+//! Section 1: closed forms, samplers against their cdf, and the inversion of any cdf.
+
+mod common;
+
+use approx::assert_relative_eq;
+use proptest::prelude::*;
+use rand::Rng;
+use rand::distr::Distribution;
+use statrs::distribution::{
+    Beta, Binomial, ContinuousCDF, DiscreteCDF, Exp, Gamma, Normal, Poisson, Weibull,
+};
+use unbiased::inversion::{Exponential, Inversion};
+use unbiased::{Budget, Density, Error, Estimate, Estimator, Stream, estimate, from_fn, ratio};
+
+const RATES: [f64; 4] = [0.37, 1.0, 2.5, 41.0];
+
+fn exponential(rate: f64) -> Exponential {
+    Exponential::new(rate).unwrap()
+}
+
+/// Half the width of the band around an empirical cdf that holds the true one with probability 1 − 1e-12 (DKW–Massart, valid for every n).
+fn dkw(n: usize) -> f64 {
+    ((2.0f64 / 1e-12).ln() / (2.0 * n as f64)).sqrt()
+}
+
+/// sup |Fₙ − F| over sorted samples.
+fn deviation(sorted: &[f64], cdf: impl Fn(f64) -> f64) -> f64 {
+    let n = sorted.len() as f64;
+    let steps = sorted.iter().enumerate().map(|(i, &x)| {
+        let f = cdf(x);
+        (f - i as f64 / n).abs().max((f - (i + 1) as f64 / n).abs())
+    });
+    steps.fold(0.0, f64::max)
+}
+
+fn sorted(n: usize, mut draw: impl FnMut() -> f64) -> Vec<f64> {
+    let mut samples: Vec<f64> = (0..n).map(|_| draw()).collect();
+    samples.sort_by(f64::total_cmp);
+    samples
+}
+
+#[test]
+fn closed_forms_agree_with_another_library() {
+    for rate in RATES {
+        let (ours, theirs) = (exponential(rate), Exp::new(rate).unwrap());
+        for i in 0..400 {
+            let x = f64::from(i) / 20.0;
+            use statrs::distribution::Continuous;
+            assert_relative_eq!(ours.pdf(x), theirs.pdf(x), epsilon = 1e-300, max_relative = 1e-13);
+            assert_relative_eq!(ours.survival(x), theirs.sf(x), epsilon = 1e-300, max_relative = 1e-13);
+            // theirs cancels: its relative error grows as 1/F
+            assert_relative_eq!(ours.cdf(x), theirs.cdf(x), epsilon = 3e-16, max_relative = 1e-13);
+        }
+        assert_eq!((ours.pdf(-1.0), ours.cdf(-1.0), ours.survival(-1.0)), (0.0, 0.0, 1.0));
+    }
+}
+
+/// Values to 17 digits from arbitrary-precision arithmetic, where the obvious formulas fail.
+#[test]
+fn closed_forms_hold_at_the_extremes() {
+    let one = exponential(1.0);
+    let close =
+        |value: f64, truth: f64| assert_relative_eq!(value, truth, epsilon = 0.0, max_relative = 4e-16);
+    assert_eq!(one.cdf(1e-17), 1e-17); // 1 − e^(−x) is 0 here
+    close(one.cdf(1e-8), 9.99999995000000038e-9);
+    close(one.survival(700.0), 9.85967654375977086e-305);
+    close(exponential(0.7).survival(1000.0), 9.85967654376020871e-305);
+    close(one.inverse_cdf(1e-20).unwrap(), 1e-20); // 1 − u rounds to 1 here
+    close(one.inverse_cdf(0.75).unwrap(), 1.386_294_361_119_890_6);
+    close(one.inverse_cdf(1.0 - f64::EPSILON / 2.0).unwrap(), 36.7368005696771014);
+    assert_eq!(one.inverse_cdf(0.0).unwrap().to_bits(), 0);
+    assert_eq!(one.inverse_cdf(1.0).unwrap(), f64::INFINITY);
+    // e^(−750) is no f64, but 1e300 times it is
+    close(exponential(1e300).pdf(7.5e-298), 1.90168496347495581e-26);
+    for u in [-1e-300, 1.0 + f64::EPSILON, f64::NAN, f64::INFINITY] {
+        assert!(matches!(one.inverse_cdf(u), Err(Error::Parameter { .. })), "{u}");
+    }
+}
+
+#[test]
+fn a_rate_that_is_not_positive_and_finite_is_an_error() {
+    for rate in [0.0, -0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let error = Exponential::new(rate).unwrap_err();
+        assert!(error.to_string().starts_with("the rate λ must be positive and finite, not "), "{error}");
+    }
+}
+
+/// n = 10⁶ samples a rate see a deviation of D = 0.0038 anywhere (α = 1e-12).
+#[test]
+fn samples_have_the_cdf() {
+    for (i, rate) in RATES.into_iter().enumerate() {
+        let exponential = exponential(rate);
+        let mut rng = Stream::new(common::seed(10), i as u64);
+        let in_f64 = sorted(1_000_000, || exponential.sample(&mut rng));
+        let in_f32 = sorted(1_000_000, || f64::from(Distribution::<f32>::sample(&exponential, &mut rng)));
+        for samples in [in_f64, in_f32] {
+            let off = deviation(&samples, |x| Exp::new(rate).unwrap().cdf(x));
+            assert!(off <= dkw(1_000_000), "λ = {rate}: {off}");
+        }
+    }
+}
+
+/// Mean 1/λ with variance 1/λ²; (X − 1/λ)² has mean 1/λ² and variance 8/λ⁴. 7 std errors at n = 10⁷ are a false alarm of 2.6e-12 (the
+/// squares are skewed, but at this n their mean is normal to well beyond 7) and catch a bias of 0.22 % in the mean, 0.63 % in the variance.
+#[test]
+fn mean_and_variance_of_the_samples_are_exact() {
+    for rate in RATES {
+        let exponential = exponential(rate);
+        let (n, mean, variance) = (10_000_000, 1.0 / rate, 1.0 / (rate * rate));
+        assert_relative_eq!(exponential.mean(), mean);
+        assert_relative_eq!(exponential.variance(), variance);
+        let found = estimate(&exponential, Budget::Draws(n), common::seed(11)).unwrap();
+        assert!((found.mean() - mean).abs() <= 7.0 * mean / (n as f64).sqrt());
+        assert!((found.variance().unwrap() - variance).abs() <= 7.0 * variance * (8.0 / n as f64).sqrt());
+    }
+}
+
+/// f/p with f = p e^(−x): E = ∫ p² … has the closed form λ/2 for f = p². Drawn from p the ratio is p(X), whose mean is λ/2 and variance λ²/12.
+#[test]
+fn it_is_a_density_to_draw_ratios_from() {
+    for rate in RATES {
+        let exponential = exponential(rate);
+        let squared = ratio(|x: &f64| exponential.pdf(*x).powi(2), exponential);
+        let found = estimate(&squared, Budget::Draws(1_000_000), common::seed(12)).unwrap();
+        // U uniform: p(X) = λ(1 − U) is uniform on (0, λ); 7 std errors catch 0.4 %
+        assert!((found.mean() - rate / 2.0).abs() <= 7.0 * rate / 12f64.sqrt() / 1000.0);
+        assert_relative_eq!(Density::pdf(&exponential, &0.3), exponential.pdf(0.3));
+    }
+}
+
+/// A generator that returns one word for ever.
+struct Constant(u64);
+
+impl rand::TryRng for Constant {
+    type Error = std::convert::Infallible;
+
+    fn try_next_u32(&mut self) -> Result<u32, Self::Error> {
+        Ok((self.0 >> 32) as u32)
+    }
+
+    fn try_next_u64(&mut self) -> Result<u64, Self::Error> {
+        Ok(self.0)
+    }
+
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Self::Error> {
+        bytes.fill(self.0 as u8);
+        Ok(())
+    }
+}
+
+#[test]
+fn the_tail_ends_where_the_grid_of_uniform_numbers_ends() {
+    let one = exponential(1.0);
+    let last: f64 = one.sample(&mut Constant(u64::MAX));
+    let first: f64 = one.sample(&mut Constant(0));
+    assert_relative_eq!(last, 53.0 * 2f64.ln(), epsilon = 0.0, max_relative = 1e-15);
+    assert_eq!(first.to_bits(), 0);
+    let last: f32 = one.sample(&mut Constant(u64::MAX));
+    let first: f32 = one.sample(&mut Constant(0));
+    assert_relative_eq!(last, 24.0 * 2f32.ln(), epsilon = 0.0, max_relative = 1e-6);
+    assert_eq!(first.to_bits(), 0);
+}
+
+/// Drawing's −ln(1 − u) and the closed form's −ln_1p(−u) agree on the whole grid.
+#[test]
+fn drawing_is_the_inverse_cdf_of_the_streams_uniform_number() {
+    for rate in RATES {
+        let exponential = exponential(rate);
+        let mut rng = Stream::new(common::seed(13), 0);
+        for _ in 0..10_000 {
+            let u = rng.clone().uniform();
+            let drawn: f64 = exponential.sample(&mut rng);
+            assert_relative_eq!(
+                drawn,
+                exponential.inverse_cdf(u).unwrap(),
+                epsilon = 0.0,
+                max_relative = 4e-16
+            );
+        }
+    }
+}
+
+#[test]
+fn a_seeds_samples_are_pinned() {
+    let exponential = exponential(0.37);
+    let mut rng = Stream::new(1, 0);
+    // xoshiro256++ by a separate program, then −ln(1 − u)/0.37 in arbitrary precision
+    for expected in PINNED {
+        let drawn: f64 = exponential.sample(&mut rng);
+        assert_relative_eq!(drawn, expected, epsilon = 0.0, max_relative = 4.5e-16);
+    }
+}
+
+const PINNED: [f64; 4] = [3.32306113305519359, 2.26802895739305536, 0.747655138316956264, 1.0747805085386809];
+
+/// F⁻(u) is the smallest number at which the cdf reaches u: F there, but not just below.
+fn is_generalised_inverse(cdf: impl Fn(f64) -> f64, x: f64, u: f64) -> bool {
+    cdf(x) >= u && cdf(x.next_down()) < u
+}
+
+const PROBABILITIES: [f64; 11] = [1e-12, 1e-6, 0.001, 0.05, 0.2, 0.5, 0.7, 0.9, 0.99, 0.999_999, 1.0 - 1e-12];
+
+/// Against the definition at every probability, and against statrs' own quantiles where those are good: in the far tail its Gamma stops at
+/// 1e-9 where the quantile is 1e-20, elsewhere they hold to about 1e-9.
+#[test]
+fn any_smooth_cdf_is_inverted() {
+    let normal = Normal::new(-1.3, 2.5).unwrap();
+    let gamma = Gamma::new(0.61, 0.37).unwrap();
+    let beta = Beta::new(0.83, 4.1).unwrap();
+    let weibull = Weibull::new(1.7, 4.1).unwrap();
+    let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
+    check_smooth("Normal", |x| normal.cdf(x), |u| normal.inverse_cdf(u), everywhere);
+    check_smooth("Gamma", |x| gamma.cdf(x), |u| gamma.inverse_cdf(u), [0.0, f64::INFINITY]);
+    check_smooth("Beta", |x| beta.cdf(x), |u| beta.inverse_cdf(u), [0.0, 1.0]);
+    check_smooth("Weibull", |x| weibull.cdf(x), |u| weibull.inverse_cdf(u), [0.0, f64::INFINITY]);
+}
+
+fn check_smooth(name: &str, cdf: impl Fn(f64) -> f64, quantile: impl Fn(f64) -> f64, support: [f64; 2]) {
+    let inversion = Inversion::new(&cdf, support).unwrap();
+    for u in PROBABILITIES {
+        let x = inversion.inverse_cdf(u).unwrap();
+        assert!(is_generalised_inverse(&cdf, x, u), "{name}: F⁻({u}) = {x}, F there is {}", cdf(x));
+        if (0.001..=0.999).contains(&u) {
+            assert_relative_eq!(x, quantile(u), epsilon = 0.0, max_relative = 1e-8);
+        }
+    }
+}
+
+#[test]
+fn jumps_and_flats_are_nothing_special() {
+    let binomial = Binomial::new(0.83, 20).unwrap();
+    let poisson = Poisson::new(4.1).unwrap();
+    let of_binomial = |x: f64| if x < 0.0 { 0.0 } else { binomial.cdf(x as u64) };
+    let of_poisson = |x: f64| if x < 0.0 { 0.0 } else { poisson.cdf(x as u64) };
+    let binomial_inverse = Inversion::new(of_binomial, [0.0, 20.0]).unwrap();
+    let poisson_inverse = Inversion::new(of_poisson, [0.0, 1e6]).unwrap();
+    let mut rng = Stream::new(common::seed(14), 0);
+    for u in PROBABILITIES.into_iter().chain((0..500).map(|_| rng.uniform())) {
+        assert_eq!(binomial_inverse.inverse_cdf(u).unwrap(), binomial.inverse_cdf(u) as f64, "{u}");
+        assert_eq!(poisson_inverse.inverse_cdf(u).unwrap(), poisson.inverse_cdf(u) as f64, "{u}");
+    }
+    // exactly at a step the lower value is the answer, and just above it the next one
+    let at_step = of_binomial(15.0);
+    assert_eq!(binomial_inverse.inverse_cdf(at_step).unwrap(), 15.0);
+    assert_eq!(binomial_inverse.inverse_cdf(at_step.next_up()).unwrap(), 16.0);
+
+    // half an atom at 0, a gap, then uniform on [2, 3]
+    let mixed = |x: f64| match x {
+        x if x < 0.0 => 0.0,
+        x if x < 2.0 => 0.5,
+        x => (0.5 + 0.5 * (x - 2.0)).min(1.0),
+    };
+    let inversion = Inversion::new(mixed, [-5.0, 5.0]).unwrap();
+    for (u, x) in [(1e-9, 0.0), (0.5, 0.0), (0.75, 2.5), (1.0, 3.0), (0.0, -5.0)] {
+        assert_eq!(inversion.inverse_cdf(u).unwrap(), x, "{u}");
+    }
+    let above = inversion.inverse_cdf(0.5f64.next_up()).unwrap();
+    assert!((2.0..2.0 + 1e-15).contains(&above), "{above}");
+}
+
+/// Samples by bisection have the cdf: n = 2·10⁵ see D = 0.0085 (α = 1e-12), for the discrete law too.
+#[test]
+fn samples_of_any_cdf_have_that_cdf() {
+    let n = 200_000;
+    let weibull = Weibull::new(1.7, 4.1).unwrap();
+    let inversion = Inversion::new(|x| weibull.cdf(x), [0.0, f64::INFINITY]).unwrap();
+    let mut rng = Stream::new(common::seed(15), 0);
+    let samples = sorted(n, || inversion.sample(&mut rng));
+    assert!(deviation(&samples, |x| weibull.cdf(x)) <= dkw(n));
+
+    let binomial = Binomial::new(0.83, 20).unwrap();
+    let of_binomial = |x: f64| if x < 0.0 { 0.0 } else { binomial.cdf(x as u64) };
+    let inversion = Inversion::new(of_binomial, [0.0, 20.0]).unwrap();
+    let mut counts = [0u32; 21];
+    for _ in 0..n {
+        counts[inversion.sample(&mut rng) as usize] += 1;
+    }
+    let mut below = 0.0;
+    for (k, count) in counts.into_iter().enumerate() {
+        below += f64::from(count) / n as f64;
+        assert!((below - of_binomial(k as f64)).abs() <= dkw(n), "{k}");
+    }
+}
+
+#[test]
+fn a_function_that_is_no_cdf_is_refused() {
+    let refused = |result: Result<f64, Error>, reason: &str| {
+        let error = result.unwrap_err().to_string();
+        assert!(error.starts_with("the function given is not a cdf: ") && error.contains(reason), "{error}");
+    };
+    let through = |cdf: fn(f64) -> f64, u| Inversion::new(cdf, [0.0, 10.0]).and_then(|i| i.inverse_cdf(u));
+    refused(through(|x| 1.0 - x / 10.0, 0.5), "falls");
+    refused(through(|x| 0.1 * x.min(4.0), 0.5), "never reaches 0.5");
+    refused(through(|x| x, 0.5), "outside [0, 1]");
+    refused(through(|_| f64::NAN, 0.5), "NaN");
+    refused(through(|x| -x / 10.0, 0.5), "outside [0, 1]");
+    for support in [[1.0, 1.0], [2.0, 1.0], [f64::NAN, 1.0], [0.0, f64::NAN], [f64::INFINITY, f64::INFINITY]]
+    {
+        assert!(Inversion::new(|_| 0.5, support).is_err(), "{support:?}");
+    }
+    // where it shows only when drawing, the run ends with an error
+    let never = Inversion::new(|x: f64| 0.05 * x, [0.0, 10.0]).unwrap();
+    let error = estimate(&from_fn(|rng| never.sample(rng)), Budget::Draws(1000), 1).unwrap_err();
+    assert!(matches!(error, Error::Draw { value, .. } if value.is_nan()));
+}
+
+#[test]
+fn an_inversion_takes_few_evaluations() {
+    let count = std::cell::Cell::new(0);
+    let cdf = |x: f64| {
+        count.set(count.get() + 1);
+        Normal::standard().cdf(x)
+    };
+    let inversion = Inversion::new(cdf, [f64::NEG_INFINITY, f64::INFINITY]).unwrap();
+    for u in PROBABILITIES {
+        count.set(0);
+        inversion.inverse_cdf(u).unwrap();
+        assert!(count.get() <= 66, "{} at {u}", count.get());
+    }
+}
+
+// ---- the classic mistakes, written out and refused ----
+
+/// An estimator of the mean 1/λ that makes a mistake, the ratio of its mean to 1/λ, and a bound on its std deviation in units of 1/λ.
+fn mistakes(rate: f64) -> Vec<(&'static str, Box<dyn Estimator>, f64, f64)> {
+    let of = |f: fn(f64, f64) -> f64| -> Box<dyn Estimator> {
+        Box::new(from_fn(move |rng| f(rng.uniform(), rate)))
+    };
+    let ln10 = 10f64.ln();
+    vec![
+        ("multiplied by λ", of(|u, rate| -rate * (1.0 - u).ln()), rate * rate, rate * rate),
+        ("sign forgotten", of(|u, rate| (1.0 - u).ln() / rate), -1.0, 1.0),
+        ("log base 10", of(|u, rate| -(1.0 - u).log10() / rate), 1.0 / ln10, 1.0 / ln10),
+        ("log base 2", of(|u, rate| -(1.0 - u).log2() / rate), 1.0 / 2f64.ln(), 1.0 / 2f64.ln()),
+        ("median returned", of(|_, rate| 2f64.ln() / rate), 2f64.ln(), 0.0),
+        // E[p(U)] = 1 − e^(−λ)
+        ("p(U) returned", of(|u, rate| rate * (-rate * u).exp()), rate * -(-rate).exp_m1(), rate * rate),
+        // E[max(1 − U, ε)'s −ln] = 1 − ε
+        ("1 − U kept off 0 by 0.1", of(|u, rate| -(1.0 - u).max(0.1).ln() / rate), 0.9, 1.0),
+        ("F(U) returned", of(|u, rate| -(-rate * u).exp_m1()), rate - -(-rate).exp_m1(), rate),
+    ]
+}
+
+/// n = 10⁶: 7 std errors are 0.7 % of 1/λ, and the nearest mistake at λ = 0.37 is 10 % off. Each one's mean is where theory puts it.
+#[test]
+fn classic_mistakes_are_refused_and_have_the_ratio_that_theory_predicts() {
+    let (rate, n) = (0.37, 1_000_000);
+    let refused = |found: &Estimate| (found.mean() - 1.0 / rate).abs() > 7.0 / rate / (n as f64).sqrt();
+    let right = estimate(&exponential(rate), Budget::Draws(n), common::seed(16)).unwrap();
+    assert!(!refused(&right));
+    for (name, mistake, predicted, spread) in mistakes(rate) {
+        let found = estimate(&mistake, Budget::Draws(n), common::seed(16)).unwrap();
+        assert!(refused(&found), "{name} passes: {found}");
+        let (ratio, room) = (found.mean() * rate, 7.0 * spread / (n as f64).sqrt() + 1e-12);
+        assert!((ratio - predicted).abs() <= room, "{name}: {ratio}, predicted {predicted}");
+    }
+}
+
+/// λ = 1 hides the multiplication: the reason why other rates are tested.
+#[test]
+fn at_rate_1_multiplying_by_lambda_cannot_be_seen() {
+    let [(_, multiplied, ..), ..] = &mistakes(1.0)[..] else { panic!("there are mistakes") };
+    let found = estimate(multiplied, Budget::Draws(1_000_000), common::seed(17)).unwrap();
+    assert!(found.z(1.0).unwrap().abs() <= 7.0);
+}
+
+/// The 95 % interval of 1,000 draws covers 1/λ in 94–96 % of 10,000 seeds. Exponential draws are skewed (skewness 2), which lowers the
+/// coverage by about 0.2 % at this n (Edgeworth: 2·φ(z)z… ·γ²/n); the binomial std error is 0.22 %, so 94 % is 4.5 of them away: at the
+/// fixed seed it holds for certain, for fresh seeds it fails with probability 1e-5, so the bound is 7 std errors there.
+#[test]
+fn intervals_cover_the_mean() {
+    let exponential = exponential(0.37);
+    let covered = (0..10_000).filter(|&i| {
+        let found = estimate(&exponential, Budget::Draws(1000), common::seed(20_000 + i)).unwrap();
+        let [low, high] = found.confidence_interval(0.95).unwrap();
+        low <= 1.0 / 0.37 && 1.0 / 0.37 <= high
+    });
+    let share = covered.count() as f64 / 10_000.0;
+    let room = if std::env::var_os("UNBIASED_SEED").is_some() { 0.017 } else { 0.01 };
+    assert!((share - 0.95).abs() <= room, "{share}");
+}
+
+proptest! {
+    #![proptest_config(common::config(5000))]
+
+    #[test]
+    fn any_bits_make_an_exponential_or_an_error(rate in any::<u64>(), x in any::<u64>(), u in any::<u64>()) {
+        let (rate, x, u) = (f64::from_bits(rate), f64::from_bits(x), f64::from_bits(u));
+        let Ok(exponential) = Exponential::new(rate) else {
+            prop_assert!(!(rate > 0.0 && rate.is_finite()));
+            return Ok(());
+        };
+        prop_assert!(rate > 0.0 && rate.is_finite());
+        if !x.is_nan() {
+            prop_assert!((0.0..=1.0).contains(&exponential.cdf(x)));
+            prop_assert!((0.0..=1.0).contains(&exponential.survival(x)));
+            prop_assert!((0.0..=rate).contains(&exponential.pdf(x)));
+        }
+        prop_assert!(exponential.mean() > 0.0 && exponential.variance() >= 0.0);
+        match exponential.inverse_cdf(u) {
+            Ok(x) => prop_assert!((0.0..=1.0).contains(&u) && x >= 0.0),
+            Err(_) => prop_assert!(!(0.0..=1.0).contains(&u)),
+        }
+    }
+
+    /// F is monotone, and F(F⁻¹(u)) = u to within rounding of x times the condition number λx p(x)/…: a few ulp of u.
+    #[test]
+    fn the_inverse_inverts(rate in 1e-3..1e3f64, u in 0.0..1.0f64, v in 0.0..1.0f64) {
+        let exponential = exponential(rate);
+        let x = exponential.inverse_cdf(u).unwrap();
+        // dF/F = λx e^(−λx)/(1 − e^(−λx)) · dx/x, a condition number of at most 1
+        prop_assert!((exponential.cdf(x) - u).abs() <= 4.0 * f64::EPSILON * u);
+        let y = exponential.inverse_cdf(v).unwrap();
+        prop_assert_eq!(u <= v, x <= y || (u > v && x == y));
+        prop_assert!((exponential.cdf(x) + exponential.survival(x) - 1.0).abs() <= 3e-16);
+    }
+
+    /// The rest of the density above x is its survival, by quadrature: ∫ p over [x, x + 1/λ] (Gauss–Legendre, 5 points on 4 pieces).
+    #[test]
+    fn the_density_integrates_to_the_cdf(rate in 0.01..100.0f64, x in 0.0..3.0f64) {
+        let exponential = exponential(rate);
+        let (from, to) = (x / rate, (x + 1.0) / rate);
+        const NODES: [(f64, f64); 5] = [
+            (-0.906_179_845_938_664, 0.236_926_885_056_189_08), (-0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
+            (0.0, 0.568_888_888_888_888_9),
+            (0.538_469_310_105_683_1, 0.478_628_670_499_366_47), (0.906_179_845_938_664, 0.236_926_885_056_189_08),
+        ];
+        let h = (to - from) / 8.0;
+        let integral: f64 = (0..4).flat_map(|piece| NODES.map(|(node, weight)| {
+            weight * h * exponential.pdf(from + h * (f64::from(2 * piece + 1) + node))
+        })).sum();
+        prop_assert!((exponential.cdf(to) - exponential.cdf(from) - integral).abs() <= 1e-12);
+    }
+
+    /// Any table of jumps makes a cdf; its inverse finds the jump, whatever the support.
+    #[test]
+    fn any_staircase_is_inverted(
+        mut steps in prop::collection::vec((-1e3..1e3f64, 0.01..1.0f64), 1..12),
+        u in 0.0..1.0f64,
+    ) {
+            steps.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let total: f64 = steps.iter().map(|(_, weight)| weight).sum();
+        let cdf = |x: f64| (steps.iter().filter(|(at, _)| *at <= x).map(|(_, weight)| weight).sum::<f64>() / total).min(1.0);
+        let inversion = Inversion::new(cdf, [f64::NEG_INFINITY, f64::INFINITY]).unwrap();
+        let x = inversion.inverse_cdf(u).unwrap();
+        if u > 0.0 {
+            let expected = steps.iter().map(|(at, _)| *at).find(|at| cdf(*at) >= u).unwrap();
+            prop_assert_eq!(x, expected);
+        } else {
+            prop_assert_eq!(x, f64::NEG_INFINITY);
+        }
+    }
+
+    #[test]
+    fn any_support_and_probability_give_a_value_or_an_error(low in any::<u64>(), high in any::<u64>(), u in any::<u64>()) {
+        let (low, high, u) = (f64::from_bits(low), f64::from_bits(high), f64::from_bits(u));
+        let normal = Normal::standard();
+        if let Ok(inversion) = Inversion::new(|x| normal.cdf(x), [low, high])
+            && let Ok(x) = inversion.inverse_cdf(u)
+        {
+            prop_assert!(low <= x && x <= high && (0.0..=1.0).contains(&u));
+        }
+    }
+}
+
+/// One word at a time, every bit: no infinite sample from any generator that is stuck.
+#[test]
+fn stuck_generators_give_finite_samples() {
+    let exponential = exponential(0.37);
+    for bit in 0..64 {
+        for word in [1u64 << bit, !(1u64 << bit)] {
+            let mut rng = Constant(word);
+            assert_eq!(rng.next_u64(), word);
+            let x: f64 = exponential.sample(&mut rng);
+            let y: f32 = exponential.sample(&mut rng);
+            assert!(x.is_finite() && x >= 0.0 && y.is_finite() && y >= 0.0);
+        }
+    }
+}
