@@ -10,7 +10,14 @@ mod q1_1;
 mod q1_2;
 #[path = "../q1_3_axes.rs"]
 mod q1_3;
+#[path = "../q2_1_square.rs"]
+mod q2_1;
 
 fn main() -> ExitCode {
-    workbook::worksheet(&[("1.1", q1_1::answer), ("1.2", q1_2::answer), ("1.3", q1_3::answer)])
+    workbook::worksheet(&[
+        ("1.1", q1_1::answer),
+        ("1.2", q1_2::answer),
+        ("1.3", q1_3::answer),
+        ("2.1", q2_1::answer),
+    ])
 }

@@ -6,9 +6,11 @@
 
 mod inversion;
 mod plot;
+mod rectangle;
 mod render;
 
 pub use inversion::{empirical_cdf, exponential, tails};
+pub use rectangle::{running_means, sampling_errors};
 
 use std::fmt::Write as _;
 use std::fs;
