@@ -1,7 +1,7 @@
 //! Section 2: integrals over a rectangle from uniform random points.
 //!
-//! Of ∫∫ f(x, y) dx dy over [a, b] × [c, d] with area A = (b − a)(d − c), each of these is an unbiased [`Estimator`]
-//! whenever ∫∫ |f| is finite; its error bar means something when ∫∫ f² is finite, too.
+//! Of ∫∫ f(x, y) dx dy over [a, b] × [c, d] with area A = (b − a)(d − c), each of these is an unbiased
+//! [`Estimator`] whenever ∫∫ |f| is finite; its error bar means something when ∫∫ f² is finite, too.
 //!
 //! | estimator | one draw | evaluations |
 //! |---|---|---|
@@ -11,8 +11,8 @@
 //! | [`Rectangle::jittered`] | A/s² Σ f, one point in each cell of an s × s grid | s² |
 //! | [`Rectangle::sobol`] | A/n Σ f over a scrambled Sobol set of n points | n |
 //!
-//! The points of the last three depend on each other, so a whole replicate, randomised afresh, is one draw: draws are
-//! independent, and the error bar made of them is right.
+//! The points of the last three depend on each other, so a whole replicate, randomised afresh, is one draw:
+//! draws are independent, and the error bar made of them is right.
 
 mod integrand;
 mod replicate;
@@ -59,8 +59,8 @@ impl Rectangle {
     /// The rectangle of all (x, y) with a ≤ x ≤ b and c ≤ y ≤ d.
     ///
     /// # Errors
-    /// If an end is not finite, a ≥ b, c ≥ d, or the width, the height, the area or 1/area leaves `f64`'s normal range,
-    /// where digits are lost.
+    /// If an end is not finite, a ≥ b, c ≥ d, or the width, the height, the area or 1/area leaves `f64`'s
+    /// normal range, where digits are lost.
     ///
     /// ```
     /// use unbiased::rectangle::Rectangle;
@@ -99,9 +99,11 @@ impl Rectangle {
         self.y
     }
 
-    /// The estimator A f(X, Y) of ∫∫ f: [`ratio`](crate::ratio)`(f, rectangle)` with the constant density 1/A taken out of the sum.
+    /// The estimator A f(X, Y) of ∫∫ f: [`ratio`](crate::ratio)`(f, rectangle)` with the constant density 1/A
+    /// taken out of the sum.
     ///
-    /// On the sheet's square its mean after n draws is ⟨Fₙ⟩ = 16/n Σ f(Xᵢ, Yᵢ). The variance of a draw is A ∫∫ f² − (∫∫ f)².
+    /// On the sheet's square its mean after n draws is ⟨Fₙ⟩ = 16/n Σ f(Xᵢ, Yᵢ). The variance of a draw is A
+    /// ∫∫ f² − (∫∫ f)².
     ///
     /// ```
     /// use unbiased::{Budget, estimate, rectangle::Rectangle};

@@ -1,8 +1,9 @@
-//! Section 2: is every estimator over a rectangle unbiased, with the variance it should have, and are the mistakes seen?
+//! Section 2: is every estimator over a rectangle unbiased, with the variance it should have, and are the
+//! mistakes seen?
 //!
-//! False alarms: a z-test at 7 standard errors is wrong with probability 2.6e-12, a DKW band at α = 1e-12 with 1e-12.
-//! This file holds about 130 of the first and 22 of the second: less than 4e-10 in all, for fresh seeds; with the fixed
-//! ones, never. What a test can see is said beside it.
+//! False alarms: a z-test at 7 standard errors is wrong with probability 2.6e-12, a DKW band at α = 1e-12
+//! with 1e-12. This file holds about 130 of the first and 22 of the second: less than 4e-10 in all, for fresh
+//! seeds; with the fixed ones, never. What a test can see is said beside it.
 
 #![allow(clippy::float_cmp)] // where == is used, the same number is meant
 
@@ -36,16 +37,16 @@ fn run(estimator: &(impl Estimator + ?Sized), draws: u64, seed: u64) -> Estimate
     estimate(estimator, Budget::Draws(draws), seed).unwrap()
 }
 
-/// The mean of `draws` draws lies within 7 standard errors of `truth`: a bias of 14 standard errors, 14σ/√draws, is seen
-/// all but surely.
+/// The mean of `draws` draws lies within 7 standard errors of `truth`: a bias of 14 standard errors,
+/// 14σ/√draws, is seen all but surely.
 fn assert_mean(what: &str, estimator: &(impl Estimator + ?Sized), truth: f64, draws: u64, seed: u64) {
     let estimate = run(estimator, draws, seed);
     let z = estimate.z(truth).unwrap();
     assert!(z.abs() <= Z, "{what}: {estimate} against {truth}, z = {z}");
 }
 
-/// The same for the variance: (draw − mean)² is itself an unbiased estimate of it. Seen is a relative bias of about
-/// 14 √((κ − 1)/draws), κ = E(X − μ)⁴/σ⁴.
+/// The same for the variance: (draw − mean)² is itself an unbiased estimate of it. Seen is a relative bias of
+/// about 14 √((κ − 1)/draws), κ = E(X − μ)⁴/σ⁴.
 fn assert_variance(
     what: &str,
     estimator: &(impl Estimator + ?Sized),
@@ -183,8 +184,8 @@ fn ways(r: Rectangle) -> Vec<(&'static str, Make)> {
     ]
 }
 
-/// sup |Fₙ − F| ≤ √(ln(2/α)/2n) for uniform numbers, α = 1e-12, whatever n (Dvoretzky, Kiefer & Wolfowitz; Massart 1990). With 50,000
-/// points the band is 0.017: a cdf off by 0.034 anywhere is seen.
+/// sup |Fₙ − F| ≤ √(ln(2/α)/2n) for uniform numbers, α = 1e-12, whatever n (Dvoretzky, Kiefer & Wolfowitz;
+/// Massart 1990). With 50,000 points the band is 0.017: a cdf off by 0.034 anywhere is seen.
 fn assert_uniform(what: &str, mut points: Vec<f64>) {
     points.sort_by(f64::total_cmp);
     let n = points.len() as f64;
@@ -197,8 +198,9 @@ fn assert_uniform(what: &str, mut points: Vec<f64>) {
     assert!(off <= band, "{what}: {off} outside the band {band}");
 }
 
-/// A random one of each set is uniform in x, in y, and in the fractional part of x + y, which it is not if they depend on
-/// each other in an obvious way (X used for Y: 2x mod 1 is uniform, so x − y is looked at, too).
+/// A random one of each set is uniform in x, in y, and in the fractional part of x + y, which it is not if
+/// they depend on each other in an obvious way (X used for Y: 2x mod 1 is uniform, so x − y is looked at,
+/// too).
 #[test]
 fn every_point_is_uniform_in_x_and_in_y() {
     let r = offset();
@@ -232,7 +234,8 @@ fn the_first_and_the_last_sobol_point_are_uniform() {
     }
 }
 
-/// 2ᵐ scrambled Sobol points are a (0, m, 2)-net: every rectangle of 2⁻ᵏ × 2^(k−m) of the square holds exactly one.
+/// 2ᵐ scrambled Sobol points are a (0, m, 2)-net: every rectangle of 2⁻ᵏ × 2^(k−m) of the square holds
+/// exactly one.
 #[test]
 fn sobol_points_are_stratified_in_every_shape_of_cell() {
     let unit = rectangle([0.0, 1.0], [0.0, 1.0]);
@@ -275,9 +278,9 @@ fn all_pairs_are_all_pairs() {
     }
 }
 
-/// The Sobol library's numbers end after 23 binary digits; ours go on to 53, as `Stream::uniform` does. That a number stops short has
-/// probability 2⁻²⁴ (all of its last 24 digits must be 0 and the rest are not looked at): 2⁻¹⁵ for one in 512, so two of 512
-/// in the same set would be a false alarm of 1e-9, five of 1e-24.
+/// The Sobol library's numbers end after 23 binary digits; ours go on to 53, as `Stream::uniform` does. That
+/// a number stops short has probability 2⁻²⁴ (all of its last 24 digits must be 0 and the rest are not looked
+/// at): 2⁻¹⁵ for one in 512, so two of 512 in the same set would be a false alarm of 1e-9, five of 1e-24.
 #[test]
 fn sobol_points_fill_the_grid_of_f64() {
     let unit = rectangle([0.0, 1.0], [0.0, 1.0]);
@@ -287,8 +290,9 @@ fn sobol_points_fill_the_grid_of_f64() {
     assert!(set.iter().flatten().all(|t| (t * (1u64 << 53) as f64).fract() == 0.0));
 }
 
-/// What `rectangle` relies on in sobol_burley: whatever the point and the scramble's upper half, the 2¹⁶ lower halves send the first 16 digits to
-/// every value once. All 16 digits of each point are therefore exactly uniform.
+/// What `rectangle` relies on in sobol_burley: whatever the point and the scramble's upper half, the 2¹⁶
+/// lower halves send the first 16 digits to every value once. All 16 digits of each point are therefore
+/// exactly uniform.
 #[test]
 fn a_scramble_reaches_every_value_once() {
     let mut rng = Stream::new(seed(180), 0);
@@ -339,8 +343,9 @@ fn points_never_leave_the_rectangle_by_rounding() {
 
 // ---- mean and variance -----------------------------------------------------------------------------------------
 
-/// Integrals, variances of a draw and of its two main effects from mpmath's nested quadrature at 30 digits, and 1/r's integral from a
-/// single one: sheet, offset 1.7 × 4.1, 1.7 × 4.1 about the origin (−0.6, 1.1) × (−1.3, 2.8), and one that holds the disc.
+/// Integrals, variances of a draw and of its two main effects from mpmath's nested quadrature at 30 digits,
+/// and 1/r's integral from a single one: sheet, offset 1.7 × 4.1, 1.7 × 4.1 about the origin (−0.6, 1.1) ×
+/// (−1.3, 2.8), and one that holds the disc.
 #[test]
 fn closed_forms_agree_with_quadrature_by_another_program() {
     let about = rectangle([-0.6, 1.1], [-1.3, 2.8]);
@@ -395,7 +400,8 @@ fn closed_forms_agree_with_quadrature_by_another_program() {
     );
 }
 
-/// The same at the ends of f64's range, where a product in the wrong order would over- or underflow (mpmath, 60 digits).
+/// The same at the ends of f64's range, where a product in the wrong order would over- or underflow (mpmath,
+/// 60 digits).
 #[test]
 fn closed_forms_hold_at_the_ends_of_the_range() {
     let tiny = 1e-300;
@@ -473,7 +479,8 @@ fn integrands_are_what_they_say() {
     assert_eq!(format!("{}", Integrand::Paraboloid), "x² + y²");
 }
 
-/// Mean and variance of A f(X, Y). Seen: a bias of 14σ/1000 (paraboloid on the sheet: 0.9 %), and one of the variance of about 2 %.
+/// Mean and variance of A f(X, Y). Seen: a bias of 14σ/1000 (paraboloid on the sheet: 0.9 %), and one of the
+/// variance of about 2 %.
 #[test]
 fn independent_pairs_have_the_exact_mean_and_variance() {
     let mut at = 200;
@@ -493,8 +500,9 @@ fn independent_pairs_have_the_exact_mean_and_variance() {
     }
 }
 
-/// 1/r has no variance on the sheet's square, so no z-test holds for it; min(1/r, M) does have one, and its mean is short of 1/r's by
-/// ∫∫ (1/r − M) over the disc r < 1/M, π/M: what clamping "fireflies" costs. Seen: 14 × 19/2000 = 0.13, at M = 10 a third of the 0.314.
+/// 1/r has no variance on the sheet's square, so no z-test holds for it; min(1/r, M) does have one, and its
+/// mean is short of 1/r's by ∫∫ (1/r − M) over the disc r < 1/M, π/M: what clamping "fireflies" costs. Seen:
+/// 14 × 19/2000 = 0.13, at M = 10 a third of the 0.314.
 #[test]
 fn the_inverse_distance_has_its_mean_and_clamping_it_is_biased() {
     let truth = Integrand::InverseDistance.integral(&SHEET).unwrap();
@@ -524,8 +532,9 @@ fn f_over_p_and_the_simplified_estimator_are_the_same() {
     }
 }
 
-/// Mean and variance of all n² pairs, exactly. Seen: 14 standard errors, at 100,000 draws 14/316 = 4 % of a draw's σ, and some 10 % of
-/// the variance: the 32 pairs of the same numbers would have 29 % more for the Gaussian, and A²σ²/n² 32 times less.
+/// Mean and variance of all n² pairs, exactly. Seen: 14 standard errors, at 100,000 draws 14/316 = 4 % of a
+/// draw's σ, and some 10 % of the variance: the 32 pairs of the same numbers would have 29 % more for the
+/// Gaussian, and A²σ²/n² 32 times less.
 #[test]
 fn all_pairs_have_the_exact_mean_and_variance() {
     let rows = [
@@ -554,8 +563,9 @@ fn the_worksheets_numbers_come_out() {
     assert!(to_four(Integrand::Paraboloid.all_pairs_variance(&SHEET, 32).unwrap(), 22.756));
 }
 
-/// Jittered xy in closed form: within a cell of w_c × h_c about (x̄, ȳ), Var XY = x̄² h_c²/12 + ȳ² w_c²/12 + w_c² h_c²/144, and Σ x̄² over the
-/// columns is s (x̄² + (w² − w_c²)/12). Seen: 10 % of the variance; without jitter, or with one jitter for all cells, it is another.
+/// Jittered xy in closed form: within a cell of w_c × h_c about (x̄, ȳ), Var XY = x̄² h_c²/12 + ȳ² w_c²/12 +
+/// w_c² h_c²/144, and Σ x̄² over the columns is s (x̄² + (w² − w_c²)/12). Seen: 10 % of the variance; without
+/// jitter, or with one jitter for all cells, it is another.
 #[test]
 fn jittered_points_have_the_exact_mean_and_variance() {
     for (i, (r, side)) in [(SHEET, 4), (offset(), 3), (offset(), 1), (offset(), 32)].into_iter().enumerate() {
@@ -583,9 +593,11 @@ fn jittered_points_have_the_exact_mean_and_variance() {
     }
 }
 
-/// The variance of xy over an Owen-scrambled (0, m, 2)-net of n = 2ᵐ points on the unit square about the origin. With N(j, k) = n max(1, 2^(m−j−k)) ordered
-/// pairs of points that share a cell of 2⁻ʲ × 2⁻ᵏ, the gain of level (j, k) is \[4N(j+1, k+1) − 2N(j+1, k) − 2N(j, k+1) + N(j, k)\]/n = 0 up to
-/// j + k = m − 2, then 2, then 1 (Owen 1997); xy has the variance 4^(−j−k)/256 there, j + k = K comes K + 1 times, and the sum is this.
+/// The variance of xy over an Owen-scrambled (0, m, 2)-net of n = 2ᵐ points on the unit square about the
+/// origin. With N(j, k) = n max(1, 2^(m−j−k)) ordered pairs of points that share a cell of 2⁻ʲ × 2⁻ᵏ, the
+/// gain of level (j, k) is \[4N(j+1, k+1) − 2N(j+1, k) − 2N(j, k+1) + N(j, k)\]/n = 0 up to j + k = m − 2,
+/// then 2, then 1 (Owen 1997); xy has the variance 4^(−j−k)/256 there, j + k = K comes K + 1 times, and the
+/// sum is this.
 fn net_variance_of_xy(m: u64) -> f64 {
     (28.0 * m as f64 / 3.0 + 16.0 / 9.0) / 256.0 / 8f64.powi(m as i32)
 }
@@ -595,9 +607,10 @@ fn net_variance_of_x(m: u64) -> f64 {
     1.0 / 12.0 / 8f64.powi(m as i32)
 }
 
-/// xy about (x̄, ȳ) is x̄ȳ + x̄ h V + ȳ w U + w h UV with uncorrelated parts: the exact variance of the Sobol estimate, by the theory of
-/// Owen scrambling. Seen: a mean off by 14/141 = 10 % of σ, which itself is 1e-4 of σ for independent points at n = 4096, and some 20 % of
-/// the variance; unscrambled points, one scramble for both axes, or digits from elsewhere do not pass.
+/// xy about (x̄, ȳ) is x̄ȳ + x̄ h V + ȳ w U + w h UV with uncorrelated parts: the exact variance of the Sobol
+/// estimate, by the theory of Owen scrambling. Seen: a mean off by 14/141 = 10 % of σ, which itself is 1e-4
+/// of σ for independent points at n = 4096, and some 20 % of the variance; unscrambled points, one scramble
+/// for both axes, or digits from elsewhere do not pass.
 #[test]
 fn sobol_points_have_the_exact_mean_and_variance() {
     // one point is the same as independent ones
@@ -617,8 +630,9 @@ fn sobol_points_have_the_exact_mean_and_variance() {
     }
 }
 
-/// Sums of a function of x and one of y, for which each axis alone decides: with n = 2ᵐ the variance is Σ over the cells of 1/n² Var, here A² \[Var X² + Var Y²\]
-/// in cells of w/n. Seen: 10 % of it, from 2 to 65536 points.
+/// Sums of a function of x and one of y, for which each axis alone decides: with n = 2ᵐ the variance is Σ
+/// over the cells of 1/n² Var, here A² \[Var X² + Var Y²\] in cells of w/n. Seen: 10 % of it, from 2 to 65536
+/// points.
 #[test]
 fn sobol_points_are_exact_on_each_axis() {
     for (i, (r, m, draws)) in
@@ -656,8 +670,8 @@ fn any_number_of_sobol_points_is_unbiased() {
     }
 }
 
-/// One draw after another: (X₁ − μ)(X₂ − μ) has mean 0 if replicates are independent, else their covariance. Seen: a correlation of
-/// 14/√20,000 = 0.1.
+/// One draw after another: (X₁ − μ)(X₂ − μ) has mean 0 if replicates are independent, else their covariance.
+/// Seen: a correlation of 14/√20,000 = 0.1.
 #[test]
 fn replicates_are_independent_of_each_other() {
     let mean = 0.9845040919157972;
@@ -684,9 +698,10 @@ fn coverage(estimator: &(impl Estimator + ?Sized), truth: f64, draws: u64, first
     (0..SEEDS).filter(|&i| inside(i)).count() as f64 / SEEDS as f64
 }
 
-/// Of every answer with a variance, at 300 draws (200 replicates): a skewed one such as the Gaussian's, mostly near 0, covers 94.8 % there, and still less with
-/// fewer. Over 40,000 seeds the share has the standard deviation √(0.95 · 0.05/40,000) = 0.0011, so 94 and 96 % are 9 of them away from 95 (7 from 94.8), and an
-/// error bar 5 % too long or too short is seen.
+/// Of every answer with a variance, at 300 draws (200 replicates): a skewed one such as the Gaussian's,
+/// mostly near 0, covers 94.8 % there, and still less with fewer. Over 40,000 seeds the share has the
+/// standard deviation √(0.95 · 0.05/40,000) = 0.0011, so 94 and 96 % are 9 of them away from 95 (7 from
+/// 94.8), and an error bar 5 % too long or too short is seen.
 #[test]
 fn intervals_cover_the_truth_as_often_as_they_say() {
     let bell = |x: f64, y: f64| Integrand::Gaussian.at(x, y);
@@ -709,7 +724,8 @@ fn intervals_cover_the_truth_as_often_as_they_say() {
 
 // ---- how the error falls ---------------------------------------------------------------------------------------
 
-/// The slope of ln RMSE against ln evaluations between two estimators, and the standard error of that slope, from unbiased estimates of both variances.
+/// The slope of ln RMSE against ln evaluations between two estimators, and the standard error of that slope,
+/// from unbiased estimates of both variances.
 fn slope(
     coarse: &dyn Estimator,
     fine: &dyn Estimator,
@@ -727,9 +743,11 @@ fn slope(
     [0.5 * (fine / coarse).ln() / step.ln(), 0.5 * coarse_off.hypot(fine_off) / step.ln()]
 }
 
-/// −1/2 for independent points; −1 for jittered ones, up to terms of the order of the cells' size squared (4 % and 0.06 % of the variance at 8²
-/// and 64² cells: 0.005 of the slope). All pairs: near −1/4, since the main effects fall as 1/n = 1/√evaluations only. Sobol: −3/2 and a logarithm,
-/// for xy exactly −1.434 from 2⁸ to 2¹⁴; the Gaussian, −1.436 ± 0.004 here, must stay below −1.35. Seen is an error of 0.05 to 0.1 in a slope.
+/// −1/2 for independent points; −1 for jittered ones, up to terms of the order of the cells' size squared (4
+/// % and 0.06 % of the variance at 8² and 64² cells: 0.005 of the slope). All pairs: near −1/4, since the
+/// main effects fall as 1/n = 1/√evaluations only. Sobol: −3/2 and a logarithm, for xy exactly −1.434 from 2⁸
+/// to 2¹⁴; the Gaussian, −1.436 ± 0.004 here, must stay below −1.35. Seen is an error of 0.05 to 0.1 in a
+/// slope.
 #[test]
 fn the_error_falls_as_it_should() {
     let f = |x: f64, y: f64| Integrand::Gaussian.at(x, y);
@@ -762,7 +780,8 @@ fn the_error_falls_as_it_should() {
 
 // ---- the classic mistakes --------------------------------------------------------------------------------------
 
-/// Each mistake, with the ratio that its expectation has to the truth. 400,000 draws: the ratio is confirmed, and 1 rejected, at 7 standard errors.
+/// Each mistake, with the ratio that its expectation has to the truth. 400,000 draws: the ratio is confirmed,
+/// and 1 rejected, at 7 standard errors.
 #[test]
 fn classic_mistakes_are_rejected_with_their_ratios() {
     let r = offset();
@@ -848,8 +867,8 @@ fn classic_mistakes_are_rejected_with_their_ratios() {
     }
 }
 
-/// The same U for x and y: 64/3 where ∫∫ xy is 0, and nothing to be seen at f = 1, where it is 16 as it should be. x + y hides it, too, in its
-/// mean; its variance is A² (w + h)²/12 for A² (w² + h²)/12.
+/// The same U for x and y: 64/3 where ∫∫ xy is 0, and nothing to be seen at f = 1, where it is 16 as it
+/// should be. x + y hides it, too, in its mean; its variance is A² (w + h)²/12 for A² (w² + h²)/12.
 #[test]
 fn the_same_u_for_x_and_y_is_seen_only_where_they_meet() {
     let same = |f: fn(f64, f64) -> f64| {
@@ -868,8 +887,9 @@ fn the_same_u_for_x_and_y_is_seen_only_where_they_meet() {
     assert_variance("x + y", &SHEET.independent(|x, y| x + y), 0.0, 256.0 * 32.0 / 12.0, 400_000, seed(444));
 }
 
-/// Points without any randomness have no variance to warn by: the error bar says ± 0 and the answer is wrong. Cell centres of s² cells miss
-/// (w_c² + h_c²)/12 of x² + y², and n unscrambled Sobol points of [0, 1] have the mean ½ − 1/(2n).
+/// Points without any randomness have no variance to warn by: the error bar says ± 0 and the answer is wrong.
+/// Cell centres of s² cells miss (w_c² + h_c²)/12 of x² + y², and n unscrambled Sobol points of [0, 1] have
+/// the mean ½ − 1/(2n).
 #[test]
 fn points_that_are_not_random_are_biased_without_a_sign() {
     let centres = from_fn(|_| {
@@ -896,8 +916,8 @@ fn points_that_are_not_random_are_biased_without_a_sign() {
     assert_mean("scrambled", &unit.sobol(|x, _| x, 64).unwrap(), 0.5, 20_000, seed(452));
 }
 
-/// n dependent points taken for n independent draws: the estimate is right and its error bar is not. All pairs' would be too small
-/// by the square root of n² Var/(A²σ²), 4.97 for the Gaussian at n = 32.
+/// n dependent points taken for n independent draws: the estimate is right and its error bar is not. All
+/// pairs' would be too small by the square root of n² Var/(A²σ²), 4.97 for the Gaussian at n = 32.
 #[test]
 fn dependent_points_taken_as_draws_have_a_wrong_error_bar() {
     let claimed = Integrand::Gaussian.variance(&SHEET).unwrap() / 1024.0;
@@ -1008,7 +1028,8 @@ fn one_infinite_or_nan_value_ends_the_run() {
     }
 }
 
-/// Sums keep every digit: 65536 terms of 0.1 are 6553.6, not 6553.600000000…; terms and weights at the ends of the range neither over- nor underflow on the way.
+/// Sums keep every digit: 65536 terms of 0.1 are 6553.6, not 6553.600000000…; terms and weights at the ends
+/// of the range neither over- nor underflow on the way.
 #[test]
 fn sums_are_exact_at_every_scale() {
     let one_draw = |estimator: &dyn Estimator| estimator.draw(&mut Stream::new(1, 0));
@@ -1231,7 +1252,8 @@ impl Polynomial {
 proptest! {
     #![proptest_config(config(8))]
 
-    /// All four estimators on random polynomials over random rectangles: 8 × 4 z-tests. Seen: 14 standard errors of each.
+    /// All four estimators on random polynomials over random rectangles: 8 × 4 z-tests. Seen: 14 standard
+    /// errors of each.
     #[test]
     fn random_polynomials_over_random_rectangles_are_unbiased(
         x in range(), y in range(),

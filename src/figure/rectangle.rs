@@ -35,7 +35,8 @@ impl Curve {
         let mut measured = Vec::new();
         for n in EVALUATIONS {
             let repeats = estimate(&of(n)?, Budget::Draws(REPEATS), seed)?;
-            // √(1/R Σ (Fᵢ − F)²), by way of the std error √(1/(R (R − 1)) Σ (Fᵢ − F̄)²), whose squares do not overflow
+            // √(1/R Σ (Fᵢ − F)²), by way of the std error √(1/(R (R − 1)) Σ (Fᵢ − F̄)²), whose squares do not
+            // overflow
             let spread = repeats.std_error().unwrap_or(0.0) * (REPEATS as f64 - 1.0).sqrt();
             measured.push([n as f64, spread.hypot(repeats.mean() - truth)]);
         }
@@ -58,11 +59,11 @@ fn on_a_logarithmic_axis([_, y]: &[f64; 2]) -> bool {
     *y > 0.0 && y.is_finite()
 }
 
-/// 2.1: root-mean-square errors against evaluations: the test set by independent pairs, and the Gaussian by all four ways to place
-/// the points.
+/// 2.1: root-mean-square errors against evaluations: the test set by independent pairs, and the Gaussian by
+/// all four ways to place the points.
 ///
-/// Lines are exact where a closed form exists, else they join the measured points. Integrands without a known integral over this rectangle
-/// are left out.
+/// Lines are exact where a closed form exists, else they join the measured points. Integrands without a known
+/// integral over this rectangle are left out.
 ///
 /// # Errors
 /// If an estimator cannot be run on this rectangle.
@@ -113,10 +114,12 @@ pub fn sampling_errors(rectangle: Rectangle, seed: u64) -> Result<Figure> {
         name: "2_1_rmse",
         title: "Errors against evaluations: four times the pairs halve the error, better placed points do more".into(),
         description: format!(
-            "Two panels on logarithmic axes, for [{a}, {b}] × [{c}, {d}]. Left: the root-mean-square error of n independent pairs for each \
-             function of the test set, measured over {REPEATS} estimates (marks), on the exact lines of slope −1/2; where the variance is infinite, as \
-             for 1/√(x² + y²) about the origin, the marks follow no such line. Right: the Gaussian by independent pairs (slope −1/2), all pairs (−1/4 in \
-             evaluations), jittered points (−1) and scrambled Sobol points (nearly −3/2). Seed {seed}."
+            "Two panels on logarithmic axes, for [{a}, {b}] × [{c}, {d}]. Left: the root-mean-square error of n \
+             independent pairs for each function of the test set, measured over {REPEATS} estimates (marks), on \
+             the exact lines of slope −1/2; where the variance is infinite, as for 1/√(x² + y²) about the \
+             origin, the marks follow no such line. Right: the Gaussian by independent pairs (slope −1/2), all \
+             pairs (−1/4 in evaluations), jittered points (−1) and scrambled Sobol points (nearly −3/2). Seed \
+             {seed}."
         ),
         edition: Edition::Solution,
         width: Width::Page,
@@ -152,7 +155,8 @@ fn panel(heading: &str, curves: &[Curve]) -> Panel {
         panel.line(&format!("{name}, {series}"), curve.ink, drawn.clone());
         panel.marks(&format!("{name}, measured"), curve.ink, curve.marker, curve.measured.clone());
     }
-    // names from the bottom up, each line at its curve's end or as far above the last one as it takes to read both
+    // names from the bottom up, each line at its curve's end or as far above the last one as it takes to read
+    // both
     let mut by_height: Vec<_> = curves.iter().collect();
     by_height.sort_by(|a, b| a.end().total_cmp(&b.end()));
     let gap = (high / low).powf(0.05);
@@ -220,8 +224,9 @@ pub fn running_means(rectangle: Rectangle, seed: u64) -> Result<Figure> {
         name: "2_1_running_mean",
         title: "Three runs of the same estimator close in on the truth, as fast as their own error bars say".into(),
         description: format!(
-            "Three panels, one a seed: the mean of n independent draws of A e^(−X²−Y²) over [{a}, {b}] × [{c}, {d}] against n from 10 to 100 000 on a logarithmic axis, \
-             in its 95 % interval, which narrows as 1/√n; a thin line at the truth, {truth:.6}."
+            "Three panels, one a seed: the mean of n independent draws of A e^(−X²−Y²) over [{a}, {b}] × [{c}, \
+             {d}] against n from 10 to 100 000 on a logarithmic axis, in its 95 % interval, which narrows as \
+             1/√n; a thin line at the truth, {truth:.6}."
         ),
         edition: Edition::Solution,
         width: Width::Page,

@@ -77,8 +77,8 @@ impl Integrand {
 
     /// f(x, y).
     ///
-    /// The inverse distance is 0 at the origin and wherever 1/r would overflow (r < 2⁻¹⁰²⁴): a point changes no integral, is drawn with
-    /// a probability of 2⁻¹⁰⁶, and an infinite draw would end the run.
+    /// The inverse distance is 0 at the origin and wherever 1/r would overflow (r < 2⁻¹⁰²⁴): a point changes
+    /// no integral, is drawn with a probability of 2⁻¹⁰⁶, and an infinite draw would end the run.
     #[inline]
     pub fn at(self, x: f64, y: f64) -> f64 {
         match self {
@@ -96,8 +96,8 @@ impl Integrand {
 
     /// ∫∫ f over the rectangle.
     ///
-    /// `None` where the disc's edge cuts the rectangle's, and where the inverse distance's closed form would cancel to fewer than 12
-    /// digits (a small rectangle far from the origin).
+    /// `None` where the disc's edge cuts the rectangle's, and where the inverse distance's closed form would
+    /// cancel to fewer than 12 digits (a small rectangle far from the origin).
     pub fn integral(self, rectangle: &Rectangle) -> Option<f64> {
         let Rectangle { x: [a, b], y: [c, d], width, height, area, .. } = *rectangle;
         let (x, y) = (a.midpoint(b), c.midpoint(d));
@@ -125,9 +125,9 @@ impl Integrand {
 
     /// The variance of one draw A f(X, Y), A ∫∫ f² − (∫∫ f)².
     ///
-    /// +∞ for the inverse distance if the origin lies in the rectangle or on its edge, otherwise `None`, as it has no elementary
-    /// form then. `None` as well where the disc's edge cuts the rectangle's, and where the Gaussian hardly varies, so that its variance
-    /// would cancel to fewer than 12 digits.
+    /// +∞ for the inverse distance if the origin lies in the rectangle or on its edge, otherwise `None`, as
+    /// it has no elementary form then. `None` as well where the disc's edge cuts the rectangle's, and where
+    /// the Gaussian hardly varies, so that its variance would cancel to fewer than 12 digits.
     pub fn variance(self, rectangle: &Rectangle) -> Option<f64> {
         let Rectangle { x: [a, b], y: [c, d], width, height, area, .. } = *rectangle;
         match self {
@@ -153,8 +153,8 @@ impl Integrand {
         }
     }
 
-    /// The variance of one draw of all n² pairs, \[V + (n − 1)(V_x + V_y)\]/n² with V the variance of A f(X, Y), V_x that of A E\[f|X\] and V_y that
-    /// of A E\[f|Y\]; see [`Rectangle::all_pairs`].
+    /// The variance of one draw of all n² pairs, \[V + (n − 1)(V_x + V_y)\]/n² with V the variance of A f(X,
+    /// Y), V_x that of A E\[f|X\] and V_y that of A E\[f|Y\]; see [`Rectangle::all_pairs`].
     ///
     /// `None` for n = 0 and where a variance has no closed form.
     ///
@@ -257,8 +257,8 @@ fn with_digits(value: f64, largest: f64) -> Option<f64> {
     (value.is_finite() && value >= largest / 1024.0).then_some(value)
 }
 
-/// ∫ e^(−kx²) dx from a to b, for k = 1 ½√π (erf b − erf a): by quadrature, to the last digits, where a difference of
-/// two erf would cancel.
+/// ∫ e^(−kx²) dx from a to b, for k = 1 ½√π (erf b − erf a): by quadrature, to the last digits, where a
+/// difference of two erf would cancel.
 fn bell(k: f64, [a, b]: [f64; 2]) -> f64 {
     if a < 0.0 && 0.0 < b {
         return bell(k, [0.0, -a]) + bell(k, [0.0, b]);
@@ -300,7 +300,8 @@ fn bell_variance(range: [f64; 2]) -> Option<f64> {
     with_digits(square - bell(1.0, range).powi(2), square)
 }
 
-/// ∫∫ 1/r from the origin to the corner (x, y), x asinh(y/|x|) + y asinh(x/|y|), negative where one of x and y is.
+/// ∫∫ 1/r from the origin to the corner (x, y), x asinh(y/|x|) + y asinh(x/|y|), negative where one of x and
+/// y is.
 fn corner(x: f64, y: f64) -> f64 {
     let sign = x.signum() * y.signum();
     let (x, y) = (x.abs(), y.abs());

@@ -8,8 +8,8 @@ use crate::error::{Result, require_count};
 use crate::run::Estimator;
 use crate::stream::Stream;
 
-/// Sobol's points are kept to 16 digits by `sobol_burley`, so the set repeats after 2¹⁶ of them; a side of a grid gets the same
-/// limit, which makes a draw 2³² evaluations at most.
+/// Sobol's points are kept to 16 digits by `sobol_burley`, so the set repeats after 2¹⁶ of them; a side of a
+/// grid gets the same limit, which makes a draw 2³² evaluations at most.
 const LIMIT: u64 = 1 << 16;
 
 fn require_points(name: &'static str, n: u64) -> Result<u32> {
@@ -24,10 +24,11 @@ fn per_block(evaluations: u64) -> u64 {
 impl Rectangle {
     /// The estimator A/n² Σᵢ Σⱼ f(Xᵢ, Yⱼ): n values of x, n of y, all n² pairs.
     ///
-    /// The sheet's 2n values give n independent pairs, or n² that are not. These are unbiased, too, since every single
-    /// pair is uniform, but the variance does not fall as 1/n²: with σ² = Var f(X, Y), σ_x² = Var E\[f|X\] and σ_y² = Var E\[f|Y\]
-    /// it is A² \[σ² + (n − 1)(σ_x² + σ_y²)\]/n². The n independent pairs have A² σ²/n, which is never less, and
-    /// is no more where f(x, y) = g(x) + h(y), since then σ² = σ_x² + σ_y². (Efron & Stein 1981;
+    /// The sheet's 2n values give n independent pairs, or n² that are not. These are unbiased, too, since
+    /// every single pair is uniform, but the variance does not fall as 1/n²: with σ² = Var f(X, Y), σ_x² =
+    /// Var E\[f|X\] and σ_y² = Var E\[f|Y\] it is A² \[σ² + (n − 1)(σ_x² + σ_y²)\]/n². The n independent
+    /// pairs have A² σ²/n, which is never less, and is no more where f(x, y) = g(x) + h(y), since then σ² =
+    /// σ_x² + σ_y². (Efron & Stein 1981;
     /// [`Integrand::all_pairs_variance`](super::Integrand::all_pairs_variance).)
     ///
     /// # Errors
@@ -49,9 +50,9 @@ impl Rectangle {
 
     /// The estimator A/s² Σ f over one uniform point in each cell of an s × s grid.
     ///
-    /// The variance is that *within* the cells alone, A²/s⁴ Σ Var f(cell): for a smooth f it falls as s⁻⁴ and the error as 1/evaluations;
-    /// across a jump such as the disc's edge, as evaluations^(−3/4). It is never more than with as many independent
-    /// points. (*Physically Based Rendering*, 4th ed., section 2.2.1.)
+    /// The variance is that *within* the cells alone, A²/s⁴ Σ Var f(cell): for a smooth f it falls as s⁻⁴ and
+    /// the error as 1/evaluations; across a jump such as the disc's edge, as evaluations^(−3/4). It is never
+    /// more than with as many independent points. (*Physically Based Rendering*, 4th ed., section 2.2.1.)
     ///
     /// # Errors
     /// If the side s is not from 1 to 2¹⁶.
@@ -62,12 +63,12 @@ impl Rectangle {
 
     /// The estimator A/n Σ f over the first n points of an Owen-scrambled Sobol sequence in two dimensions.
     ///
-    /// For n = 2ᵐ every rectangle of 2⁻ᵏ of the width and 2^(k−m) of the height holds exactly one point: the error of a smooth f
-    /// falls nearly as n^(−3/2) (Owen 1997). Other n are allowed, and gain less.
+    /// For n = 2ᵐ every rectangle of 2⁻ᵏ of the width and 2^(k−m) of the height holds exactly one point: the
+    /// error of a smooth f falls nearly as n^(−3/2) (Owen 1997). Other n are allowed, and gain less.
     ///
-    /// The points are those of `sobol_burley`, to as many binary digits as n takes; the digits below come from the stream, as in Owen's
-    /// definition. Each axis has 32 random bits of its own to scramble by, and every point is then exactly uniform, on
-    /// the same grid of 2⁻⁵³ as [`Stream::uniform`].
+    /// The points are those of `sobol_burley`, to as many binary digits as n takes; the digits below come
+    /// from the stream, as in Owen's definition. Each axis has 32 random bits of its own to scramble by, and
+    /// every point is then exactly uniform, on the same grid of 2⁻⁵³ as [`Stream::uniform`].
     ///
     /// # Errors
     /// If n is not from 1 to 2¹⁶, after which the sequence would repeat.
@@ -178,7 +179,8 @@ pub struct Sobol<F> {
 impl<F: Fn(f64, f64) -> f64 + Sync> Estimator for Sobol<F> {
     fn draw(&self, rng: &mut Stream) -> f64 {
         let digits = self.points.next_power_of_two().trailing_zeros();
-        // both axes scrambled by bits of their own: one 32-bit seed for both, as `sobol_burley::sample` takes, knows only 2³² replicates
+        // both axes scrambled by bits of their own: one 32-bit seed for both, as `sobol_burley::sample`
+        // takes, knows only 2³² replicates
         let scrambles = rng.next_u64();
         let mut mean = Mean::new(self.rectangle.area, self.points.into());
         for index in 0..self.points {
@@ -197,11 +199,11 @@ impl<F: Fn(f64, f64) -> f64 + Sync> Estimator for Sobol<F> {
     }
 }
 
-/// A coordinate on the grid k·2⁻⁵³ in [0, 1): its first `digits` ≤ 16 binary digits are those of a Sobol point (given in reverse), scrambled, and the
-/// rest are those of `random`.
+/// A coordinate on the grid k·2⁻⁵³ in [0, 1): its first `digits` ≤ 16 binary digits are those of a Sobol
+/// point (given in reverse), scrambled, and the rest are those of `random`.
 ///
-/// Over all scrambles the first 16 digits take each value equally often (`owen_scramble_rev` adds the scramble's low half and then only
-/// permutes); the further ones of `sobol_burley`'s 23 do not quite.
+/// Over all scrambles the first 16 digits take each value equally often (`owen_scramble_rev` adds the
+/// scramble's low half and then only permutes); the further ones of `sobol_burley`'s 23 do not quite.
 #[inline]
 fn scrambled(sobol_rev: u32, scramble: u32, digits: u32, random: u64) -> f64 {
     const STEP: f64 = 1.0 / (1u64 << 53) as f64;
@@ -213,7 +215,8 @@ fn scrambled(sobol_rev: u32, scramble: u32, digits: u32, random: u64) -> f64 {
 
 /// The sum A/n Σ f of a replicate, compensated (Neumaier 1974): 2³² terms are as accurate as one.
 ///
-/// Terms are first scaled by the power of two below A/n, which is exact, so the sum overflows only where the result does.
+/// Terms are first scaled by the power of two below A/n, which is exact, so the sum overflows only where the
+/// result does.
 struct Mean {
     area: f64,
     points: f64,
