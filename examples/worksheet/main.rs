@@ -10,6 +10,8 @@ mod q1_1;
 mod q1_2;
 #[path = "../q1_3_axes.rs"]
 mod q1_3;
+#[path = "../q2_1_square.rs"]
+mod q2_1;
 #[path = "../q3_1_emission.rs"]
 mod q3_1;
 #[path = "../q3_2_uniform_sky.rs"]
@@ -34,6 +36,7 @@ fn main() -> ExitCode {
         ("1.1", q1_1::answer),
         ("1.2", q1_2::answer),
         ("1.3", q1_3::answer),
+        ("2.1", q2_1::answer),
         ("3.1", q3_1::answer),
         ("3.2", q3_2::answer),
         ("3.3", q3_3::answer),

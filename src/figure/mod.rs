@@ -7,11 +7,13 @@
 mod inversion;
 mod lambertian;
 mod plot;
+mod rectangle;
 mod render;
 mod roulette;
 
 pub use inversion::{empirical_cdf, exponential, tails};
 pub use lambertian::{directions, integrand, variance_against_exponent, variance_against_ring};
+pub use rectangle::{running_means, sampling_errors};
 pub use roulette::{bounces, mean_bounces, roulette_trade, truncation};
 
 use std::fmt::Write as _;

@@ -1,0 +1,238 @@
+//! Figures of section 2.
+
+use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
+use super::{Edition, Figure};
+use crate::error::Result;
+use crate::rectangle::{Integrand, Rectangle};
+use crate::run::{Budget, Estimator, estimate, from_fn};
+
+/// Points of one measured curve: 4ᵏ evaluations, from 4 to 4⁷.
+const EVALUATIONS: [u64; 7] = [4, 16, 64, 256, 1024, 4096, 16384];
+
+/// Where the names of the curves begin.
+const LAST_X: f64 = 17e3;
+
+/// Estimates that each measured error is the root mean square of: it is good to about 1/√(2 · 200) = 5 %.
+const REPEATS: u64 = 200;
+
+/// One curve: (evaluations, RMSE) measured, and the exact standard error where it is known.
+struct Curve {
+    label: String,
+    ink: Ink,
+    marker: Marker,
+    measured: Vec<[f64; 2]>,
+    exact: Option<Vec<[f64; 2]>>,
+}
+
+impl Curve {
+    /// The RMSE about `truth` of `of(n)` for each number of evaluations n.
+    fn measure<E: Estimator>(
+        (label, ink, marker): (&str, Ink, Marker),
+        truth: f64,
+        seed: u64,
+        of: impl Fn(u64) -> Result<E>,
+    ) -> Result<Self> {
+        let mut measured = Vec::new();
+        for n in EVALUATIONS {
+            let repeats = estimate(&of(n)?, Budget::Draws(REPEATS), seed)?;
+            // √(1/R Σ (Fᵢ − F)²), by way of the std error √(1/(R (R − 1)) Σ (Fᵢ − F̄)²), whose squares do not
+            // overflow
+            let spread = repeats.std_error().unwrap_or(0.0) * (REPEATS as f64 - 1.0).sqrt();
+            measured.push([n as f64, spread.hypot(repeats.mean() - truth)]);
+        }
+        measured.retain(on_a_logarithmic_axis);
+        Ok(Self { label: label.into(), ink, marker, measured, exact: None })
+    }
+
+    fn exact(mut self, std_error: impl Fn(f64) -> Option<f64>) -> Self {
+        let points = EVALUATIONS.map(|n| std_error(n as f64).map(|error| [n as f64, error]));
+        self.exact = points.into_iter().map(|point| point.filter(on_a_logarithmic_axis)).collect();
+        self
+    }
+
+    fn end(&self) -> f64 {
+        self.exact.as_ref().unwrap_or(&self.measured).last().map_or(1.0, |[_, y]| *y)
+    }
+}
+
+fn on_a_logarithmic_axis([_, y]: &[f64; 2]) -> bool {
+    *y > 0.0 && y.is_finite()
+}
+
+/// 2.1: root-mean-square errors against evaluations: the test set by independent pairs, and the Gaussian by
+/// all four ways to place the points.
+///
+/// Lines are exact where a closed form exists, else they join the measured points. Integrands without a known
+/// integral over this rectangle are left out.
+///
+/// # Errors
+/// If an estimator cannot be run on this rectangle.
+pub fn sampling_errors(rectangle: Rectangle, seed: u64) -> Result<Figure> {
+    let bell = |x: f64, y: f64| Integrand::Gaussian.at(x, y);
+    let styles = [
+        (Integrand::Paraboloid, Ink::Blue, Marker::Disc),
+        (Integrand::Product, Ink::Vermilion, Marker::Ring),
+        (Integrand::Disc, Ink::Green, Marker::Square),
+        (Integrand::Gaussian, Ink::Purple, Marker::Triangle),
+        (Integrand::InverseDistance, Ink::Black, Marker::Cross),
+    ];
+    let mut test_set = Vec::new();
+    for (f, ink, marker) in styles {
+        let Some(truth) = f.integral(&rectangle).filter(|truth| truth.is_finite()) else { continue };
+        let variance = f.variance(&rectangle).filter(|variance| variance.is_finite());
+        let infinite = f.variance(&rectangle) == Some(f64::INFINITY);
+        let label = if infinite { format!("{f}\ninfinite variance") } else { f.to_string() };
+        let curve = Curve::measure((&label, ink, marker), truth, seed, |n| Ok(mean_of(rectangle, f, n)))?;
+        test_set.push(curve.exact(|n| Some((variance? / n).sqrt())));
+    }
+    let mut ways = Vec::new();
+    if let Some(truth) = Integrand::Gaussian.integral(&rectangle) {
+        let variance = Integrand::Gaussian.variance(&rectangle);
+        let root = |n: u64| n.isqrt();
+        let pairs = |n: f64| Integrand::Gaussian.all_pairs_variance(&rectangle, root(n as u64));
+        let all_pairs = ("all pairs\nslope −1/4", Ink::Vermilion, Marker::Ring);
+        let independent = ("independent\nslope −1/2", Ink::Blue, Marker::Disc);
+        let jittered = ("jittered\nslope −1", Ink::Green, Marker::Square);
+        let sobol = ("Sobol\nslope near −3/2", Ink::Purple, Marker::Triangle);
+        ways = vec![
+            Curve::measure(all_pairs, truth, seed, |n| rectangle.all_pairs(bell, root(n)))?
+                .exact(|n| pairs(n).map(f64::sqrt)),
+            Curve::measure(independent, truth, seed, |n| Ok(mean_of(rectangle, Integrand::Gaussian, n)))?
+                .exact(|n| Some((variance? / n).sqrt())),
+            Curve::measure(jittered, truth, seed, |n| rectangle.jittered(bell, root(n)))?,
+            Curve::measure(sobol, truth, seed, |n| rectangle.sobol(bell, n))?,
+        ];
+    }
+    for curves in [&mut test_set, &mut ways] {
+        curves.retain(|curve| !curve.measured.is_empty());
+    }
+    let mut left = panel("Independent pairs", &test_set);
+    guide(&mut left, &test_set);
+    let right = panel("e^(−x²−y²), points placed four ways", &ways);
+    let ([a, b], [c, d]) = (rectangle.x_range(), rectangle.y_range());
+    Plot {
+        name: "2_1_rmse",
+        title: "Errors against evaluations: four times the pairs halve the error, better placed points do more".into(),
+        description: format!(
+            "Two panels on logarithmic axes, for [{a}, {b}] × [{c}, {d}]. Left: the root-mean-square error of n \
+             independent pairs for each function of the test set, measured over {REPEATS} estimates (marks), on \
+             the exact lines of slope −1/2; where the variance is infinite, as for 1/√(x² + y²) about the \
+             origin, the marks follow no such line. Right: the Gaussian by independent pairs (slope −1/2), all \
+             pairs (−1/4 in evaluations), jittered points (−1) and scrambled Sobol points (nearly −3/2). Seed \
+             {seed}."
+        ),
+        edition: Edition::Solution,
+        width: Width::Page,
+        height_mm: 92.0,
+        columns: 2,
+        panels: vec![left, right],
+    }
+    .draw()
+}
+
+/// ⟨Fₙ⟩ = A/n Σ f(Xᵢ, Yᵢ) as one draw.
+fn mean_of(rectangle: Rectangle, f: Integrand, n: u64) -> impl Estimator {
+    let one = rectangle.independent(move |x, y| f.at(x, y));
+    from_fn(move |rng| (0..n).map(|_| one.draw(rng)).sum::<f64>() / n as f64)
+}
+
+/// Axes that hold all curves, with room for their names at the right ends.
+fn panel(heading: &str, curves: &[Curve]) -> Panel {
+    let all = || curves.iter().flat_map(|curve| curve.measured.iter().chain(curve.exact.iter().flatten()));
+    let low = all().fold(f64::INFINITY, |low, [_, y]| low.min(*y));
+    let high = all().fold(0.0, |high: f64, [_, y]| high.max(*y));
+    let [low, high] = if low < high { [low * 0.3, high * 1.5] } else { [0.1, 10.0] };
+    let ticks = [(1.0, "1"), (10.0, "10"), (100.0, "10²"), (1000.0, "10³"), (1e4, "10⁴")];
+    let mut panel = Panel::new(
+        heading,
+        Axis::log("evaluations of f (dimensionless)", 3.0, 4e6).with_ticks(ticks),
+        Axis::log("RMSE (units of ∫∫ f dx dy)", low, high),
+    );
+    for curve in curves {
+        let drawn = curve.exact.as_ref().unwrap_or(&curve.measured);
+        let series = if curve.exact.is_some() { "exact" } else { "measured" };
+        let name = curve.label.replace('\n', ", ");
+        panel.line(&format!("{name}, {series}"), curve.ink, drawn.clone());
+        panel.marks(&format!("{name}, measured"), curve.ink, curve.marker, curve.measured.clone());
+    }
+    // names from the bottom up, each line at its curve's end or as far above the last one as it takes to read
+    // both
+    let mut by_height: Vec<_> = curves.iter().collect();
+    by_height.sort_by(|a, b| a.end().total_cmp(&b.end()));
+    let gap = (high / low).powf(0.05);
+    let mut next = low;
+    for curve in by_height {
+        let mut y = curve.end().max(next);
+        for line in curve.label.lines().rev() {
+            panel.text(curve.ink, [LAST_X, y], Side::Right, line);
+            y *= gap;
+        }
+        next = y;
+    }
+    panel
+}
+
+/// A line of slope −1/2 below the curves.
+fn guide(panel: &mut Panel, curves: &[Curve]) {
+    let lowest = curves.iter().map(Curve::end).fold(f64::INFINITY, f64::min);
+    if lowest.is_finite() {
+        let at = |n: f64| [n, 0.5 * lowest * (16384.0 / n).sqrt()];
+        panel.line("slope −1/2", Ink::Grey, [at(4.0), at(16384.0)]);
+        panel.text(Ink::Grey, at(600.0), Side::Left, "slope −1/2");
+    }
+}
+
+/// 2.1: the mean of e^(−x²−y²) so far, with its 95 % interval, for three seeds.
+///
+/// # Errors
+/// If it cannot be drawn.
+pub fn running_means(rectangle: Rectangle, seed: u64) -> Result<Figure> {
+    let bell = rectangle.independent(|x, y| Integrand::Gaussian.at(x, y));
+    let truth = Integrand::Gaussian.integral(&rectangle).unwrap_or(f64::NAN);
+    // four tenths of the standard deviation: the interval's half width at about n = 25
+    let spread = Integrand::Gaussian.variance(&rectangle).unwrap_or(1.0).sqrt();
+    let reach = if spread.is_normal() { 0.4 * spread } else { 1.0 };
+    let (first, last) = (10.0, 1e5);
+    let mut panels = Vec::new();
+    for seed in (0..3).map(|i| seed.wrapping_add(i)) {
+        let (mut means, mut band) = (Vec::new(), Vec::new());
+        for i in 0..=80 {
+            let n = (first * f64::powf(last / first, f64::from(i) / 80.0)).round();
+            let estimate = estimate(&bell, Budget::Draws(n as u64), seed)?;
+            let [low, high] = estimate.confidence_interval(0.95)?;
+            means.push([n, estimate.mean()]);
+            band.push([n, low, high]);
+        }
+        let x = Axis::log("n pairs (dimensionless)", first, last);
+        let y = Axis::linear("mean of A f(X, Y)", truth - reach, truth + reach);
+        let mut panel = Panel::new(&format!("Seed {seed}"), x, y);
+        panel.band("95 % interval", Ink::Blue, band).level("truth", Ink::Black, truth).line(
+            "mean of n",
+            Ink::Blue,
+            means,
+        );
+        if panels.is_empty() {
+            panel
+                .text(Ink::Black, [last, truth - 0.62 * reach], Side::Left, &format!("thin line: {truth:.6}"))
+                .text(Ink::Blue, [last, truth - 0.75 * reach], Side::Left, "band: 95 % interval")
+                .text(Ink::Blue, [last, truth - 0.88 * reach], Side::Left, "from s/√n so far");
+        }
+        panels.push(panel);
+    }
+    let ([a, b], [c, d]) = (rectangle.x_range(), rectangle.y_range());
+    Plot {
+        name: "2_1_running_mean",
+        title: "Three runs of the same estimator close in on the truth, as fast as their own error bars say".into(),
+        description: format!(
+            "Three panels, one a seed: the mean of n independent draws of A e^(−X²−Y²) over [{a}, {b}] × [{c}, \
+             {d}] against n from 10 to 100 000 on a logarithmic axis, in its 95 % interval, which narrows as \
+             1/√n; a thin line at the truth, {truth:.6}."
+        ),
+        edition: Edition::Solution,
+        width: Width::Page,
+        height_mm: 62.0,
+        columns: 3,
+        panels,
+    }
+    .draw()
+}
