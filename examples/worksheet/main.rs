@@ -18,7 +18,7 @@ mod q3_1;
 mod q3_2;
 #[path = "../q3_3_dependence.rs"]
 mod q3_3;
-#[path = "../q3_4_uniform_directions.rs"]
+#[path = "../q3_4_brdf_directions.rs"]
 mod q3_4;
 #[path = "../q3_5_cosine_directions.rs"]
 mod q3_5;

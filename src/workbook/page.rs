@@ -79,16 +79,16 @@ fn article(question: &'static Question, answers: &[Answer], options: &Options) -
     let figures = answers.iter().flat_map(|answer| answer.figures(edition));
     Ok(html! {
         article id={ "q" (question.id) } {
-            h3 { (question.id) " " (question.title) }
-            p.statement { (question.statement) }
+            h3 { (question.id) " " (prose(question.title)) }
+            p.statement { (prose(question.statement)) }
             @if edition == Edition::Solution {
                 @for formula in &formulas { div.formula { (PreEscaped(formula)) } }
-                p { (question.answer) }
+                p { (prose(question.answer)) }
                 @if answers.iter().any(|answer| answer.found().is_some() || answer.exact().is_some()) {
                     (numbers(&answers, &options))
                 }
                 @for answer in &answers {
-                    @if let Some(sentence) = answer.sentence() { p { (sentence) } }
+                    @if let Some(sentence) = answer.sentence() { p { (prose(sentence)) } }
                 }
             }
             div.figures {
@@ -102,11 +102,11 @@ fn article(question: &'static Question, answers: &[Answer], options: &Options) -
                 @if !question.wrong.is_empty() {
                     h4 { "Classic wrong answers" }
                     dl {
-                        @for wrong in question.wrong { dt { (wrong.answer) } dd { (wrong.slip) } }
+                        @for wrong in question.wrong { dt { (prose(wrong.answer)) } dd { (prose(wrong.slip)) } }
                     }
                 }
                 @if let Some(note) = question.on_the_original {
-                    aside { strong { "On the original sheet. " } (note) }
+                    aside { strong { "On the original sheet. " } (prose(note)) }
                 }
                 p.command { code { (options.command(question)) } }
             }
@@ -124,22 +124,45 @@ fn numbers(answers: &[&Answer], options: &Options) -> Markup {
                     @if answer.found().is_some() || answer.exact().is_some() {
                         tr class=(if answer.agrees().is_none() && answer.estimate().is_some() { "demonstration" } else { "" }) {
                             td { (answer.question()) }
-                            td { (answer.what())
+                            td { (prose(answer.what()))
                                 @for (name, value) in answer.parameters().iter().filter(|(name, _)| varied.contains(name)) { ", " (name) " = " (print::shortened(*value)) } }
-                            td { @if let Some(truth) = answer.exact() { (print::shortened(truth)) } }
-                            td {
+                            td.number { @if let Some(truth) = answer.exact() { (print::shortened(truth)) } }
+                            td.number {
                                 @if answer.estimate().is_some() { (print::interval(answer)) }
                                 @else if let Some(value) = answer.found() { (print::shortened(value)) }
                             }
-                            td { @if let Some(z) = answer.z() { (format!("{z:.2}").replace('-', "−")) }
+                            td.number { @if let Some(z) = answer.z() { (format!("{z:.2}").replace('-', "−")) }
                                 @match answer.agrees() { Some(true) => " ✓", Some(false) => " ✗", None => "" } }
-                            td { @if let Some(estimate) = answer.estimate() { (grouped(estimate.draws())) } }
+                            td.number { @if let Some(estimate) = answer.estimate() { (grouped(estimate.draws())) } }
                         }
                     }
                 }
             }
         } }
     }
+}
+
+/// Plain text with its x_i as subscripts, and its x^n and x^(…) as superscripts.
+fn prose(text: &str) -> Markup {
+    let mut html = String::new();
+    let mut rest = text;
+    while let Some(at) = rest.find(['_', '^']) {
+        let (before, mark) = rest.split_at(at);
+        html += &escaped(before);
+        let after = mark.get(1..).unwrap_or_default();
+        let tag = if mark.starts_with('_') { "sub" } else { "sup" };
+        let (shifted, left) = match after.strip_prefix('(').and_then(|inside| inside.split_once(')')) {
+            Some(parts) if tag == "sup" => parts,
+            _ => after.split_at(after.find(|c: char| !c.is_alphanumeric()).unwrap_or(after.len())),
+        };
+        html += &format!("<{tag}>{}</{tag}>", escaped(shifted));
+        rest = left;
+    }
+    PreEscaped(html + &escaped(rest))
+}
+
+fn escaped(text: &str) -> String {
+    html! { (text) }.into_string()
 }
 
 /// Digits in threes.
@@ -177,7 +200,7 @@ nav { line-height: 2; } nav a { display: inline-block; padding: 0 .4rem; color: 
 .figures { display: flex; flex-wrap: wrap; gap: 0 1rem; } figure { margin: 1rem 0; max-width: 100%; flex: 0 1 auto; } figure svg { max-width: 100%; height: auto; } figcaption { font-size: .85rem; color: #444; max-width: 85mm; }
 .wide { overflow-x: auto; } table { border-collapse: collapse; font-size: .85rem; }
 th, td { text-align: left; padding: .2rem .6rem .2rem 0; border-bottom: 1px solid #ddd; vertical-align: top; }
-td { font-variant-numeric: tabular-nums; } tr.demonstration td { color: #666; }
+.number { font-variant-numeric: tabular-nums; white-space: nowrap; } sub, sup { line-height: 0; } tr.demonstration td { color: #666; }
 dl { display: grid; grid-template-columns: minmax(5rem, max-content) 1fr; gap: .15rem 1rem; font-size: .9rem; margin: 0; }
 dt { font-weight: 600; } dd { margin: 0; }
 aside { border-left: 3px solid #d55e00; padding-left: .8rem; margin: 1rem 0; font-size: .9rem; }
@@ -191,3 +214,39 @@ footer { font-size: .8rem; color: #444; margin-top: 3rem; }
   article, figure, table { break-inside: avoid; } h2, h3, h4 { break-after: avoid; }
 }
 ";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prose_gets_subscripts_and_superscripts() {
+        for (plain, html) in [
+            ("p_rr = 4/5, L_i < 1", "p<sub>rr</sub> = 4/5, L<sub>i</sub> &lt; 1"),
+            ("λ e^(−λx) dx", "λ e<sup>−λx</sup> dx"),
+            ("cos^a θ", "cos<sup>a</sup> θ"),
+            ("no marks", "no marks"),
+            ("at the end_", "at the end<sub></sub>"),
+        ] {
+            assert_eq!(prose(plain).into_string(), html);
+        }
+    }
+
+    #[test]
+    fn counts_are_grouped_in_threes() {
+        assert_eq!(
+            [grouped(7), grouped(1000), grouped(1234567)],
+            ["7", "1\u{202f}000", "1\u{202f}234\u{202f}567"]
+        );
+    }
+
+    #[test]
+    fn every_formula_becomes_mathml() {
+        for question in crate::workbook::questions() {
+            for latex in question.latex {
+                assert!(mathml(latex).is_ok_and(|math| math.starts_with("<math")), "{latex}");
+            }
+        }
+        assert!(mathml(r"\frac{1}").is_err());
+    }
+}

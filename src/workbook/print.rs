@@ -95,7 +95,10 @@ fn text(question: &Question, rows: &[(&Answer, Vec<PathBuf>)], options: &Options
             writeln!(out, "    figure       {}", svg.display())?;
         }
     }
-    writeln!(out, "\n    again        {}", options.command(question))
+    if options.edition == Edition::Solution {
+        writeln!(out, "\n    again        {}", options.command(question))?;
+    }
+    Ok(())
 }
 
 fn solution(out: &mut impl Write, answer: &Answer, varied: &[&str]) -> io::Result<()> {

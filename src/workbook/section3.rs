@@ -107,7 +107,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         on_the_original: Some(
             "“Proportional to the BRDF” means to f_r alone, not to f_r cos θ; that is the next question.",
         ),
-        example: "q3_4_uniform_directions",
+        example: "q3_4_brdf_directions",
         module: "lambertian",
         parameters: &[ALBEDO, RADIANCE, A],
     },
