@@ -58,7 +58,6 @@ pub(crate) enum Side {
     Left,
     Right,
     Above,
-    Below,
     Centre,
 }
 

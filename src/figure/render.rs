@@ -243,7 +243,6 @@ fn draw_item(item: &Item, frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
                 Side::Left => ((x - gap, y), HPos::Right, VPos::Center),
                 Side::Right => ((x + gap, y), HPos::Left, VPos::Center),
                 Side::Above => ((x, y - gap), HPos::Center, VPos::Bottom),
-                Side::Below => ((x, y + gap), HPos::Center, VPos::Top),
                 Side::Centre => ((x, y), HPos::Center, VPos::Center),
             };
             area.draw(&Text::new(text.clone(), at, font(8.0, &dark(*ink), horizontal, vertical)))?;

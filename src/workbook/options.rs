@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use lexopt::{Arg, Parser};
 
-use super::Question;
+use super::{Answer, Question};
 use crate::error::{Error, Result};
 use crate::figure::Edition;
 use crate::run::{Budget, Estimator, Outcome, Run};
@@ -186,6 +186,14 @@ impl Options {
                 let _ = std::fs::remove_dir(&self.out);
             }
         })
+    }
+
+    /// The names of those parameters that some row has otherwise than the question's options: the others stand in the command
+    /// that repeats the answer.
+    pub(super) fn varied<'a>(&self, answers: impl IntoIterator<Item = &'a Answer>) -> Vec<&'static str> {
+        let parameters = answers.into_iter().flat_map(Answer::parameters);
+        let as_given = |name: &str, value: f64| (self.number(&name.replace('_', "-")) - value).abs() <= 0.0;
+        parameters.filter(|(name, value)| !as_given(name, *value)).map(|(name, _)| *name).collect()
     }
 
     /// The command that repeats this answer.

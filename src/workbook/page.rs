@@ -85,7 +85,7 @@ fn article(question: &'static Question, answers: &[Answer], options: &Options) -
                 @for formula in &formulas { div.formula { (PreEscaped(formula)) } }
                 p { (question.answer) }
                 @if answers.iter().any(|answer| answer.found().is_some() || answer.exact().is_some()) {
-                    (numbers(&answers))
+                    (numbers(&answers, &options))
                 }
                 @for answer in &answers {
                     @if let Some(sentence) = answer.sentence() { p { (sentence) } }
@@ -114,7 +114,8 @@ fn article(question: &'static Question, answers: &[Answer], options: &Options) -
     })
 }
 
-fn numbers(answers: &[&Answer]) -> Markup {
+fn numbers(answers: &[&Answer], options: &Options) -> Markup {
+    let varied = options.varied(answers.iter().copied());
     html! {
         div.wide { table {
             thead { tr { th { "" } th { "what" } th { "truth" } th { "estimate ± 95 %" } th { "z" } th { "draws" } } }
@@ -124,7 +125,7 @@ fn numbers(answers: &[&Answer]) -> Markup {
                         tr class=(if answer.agrees().is_none() && answer.estimate().is_some() { "demonstration" } else { "" }) {
                             td { (answer.question()) }
                             td { (answer.what())
-                                @for (name, value) in answer.parameters() { ", " (name) " = " (value) } }
+                                @for (name, value) in answer.parameters().iter().filter(|(name, _)| varied.contains(name)) { ", " (name) " = " (print::shortened(*value)) } }
                             td { @if let Some(truth) = answer.exact() { (print::shortened(truth)) } }
                             td {
                                 @if answer.estimate().is_some() { (print::interval(answer)) }

@@ -85,10 +85,11 @@ fn text(question: &Question, rows: &[(&Answer, Vec<PathBuf>)], options: &Options
     if options.edition == Edition::Solution {
         writeln!(out, "\n    closed form  {}", question.formula)?;
     }
+    let varied = options.varied(rows.iter().map(|(answer, _)| *answer));
     for (answer, paths) in rows {
         if options.edition == Edition::Solution {
             writeln!(out)?;
-            solution(out, answer)?;
+            solution(out, answer, &varied)?;
         }
         for svg in paths.iter().filter(|path| path.extension().is_some_and(|ending| ending == "svg")) {
             writeln!(out, "    figure       {}", svg.display())?;
@@ -97,10 +98,10 @@ fn text(question: &Question, rows: &[(&Answer, Vec<PathBuf>)], options: &Options
     writeln!(out, "\n    again        {}", options.command(question))
 }
 
-fn solution(out: &mut impl Write, answer: &Answer) -> io::Result<()> {
+fn solution(out: &mut impl Write, answer: &Answer, varied: &[&str]) -> io::Result<()> {
     write!(out, "    {}  {}", answer.question(), answer.what())?;
-    for (name, value) in answer.parameters() {
-        write!(out, ", {name} = {value}")?;
+    for (name, value) in answer.parameters().iter().filter(|(name, _)| varied.contains(name)) {
+        write!(out, ", {name} = {}", shortened(*value))?;
     }
     writeln!(out)?;
     if let Some(truth) = answer.exact() {
