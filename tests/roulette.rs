@@ -15,6 +15,7 @@ use common::{config, seed};
 use proptest::prelude::*;
 use rand::TryRng;
 use rand::distr::Distribution;
+use rayon::prelude::*;
 use statrs::distribution::{Discrete, DiscreteCDF};
 use statrs::statistics::Distribution as _;
 use unbiased::inversion::Exponential;
@@ -889,6 +890,50 @@ fn a_fifth_is_unbiased_but_usually_too_dark() {
     let error = (reference * (1.0 - reference) * (1.0 / n + 1.0 / reference_runs)).sqrt();
     assert!((coverage - reference).abs() <= Z * error, "{coverage}");
     assert!((coverage - 0.385).abs() <= Z * error + 0.0005, "{coverage}");
+}
+
+/// The 95 % interval of n draws covers the truth in 94 to 96 % of 10,000 seeds, for every estimator of a finite variance that answers a
+/// question. n = 1000 is enough for all of them: skewness γ ≤ 2.7 lowers the coverage by at most about γ²/4n = 0.2 % (Edgeworth's expansion).
+///
+/// The share's own std error is 0.22 %, so at the fixed seed the bounds hold for certain, and fresh seeds are given
+/// 7 std errors and 0.5 % for skewness and for the steps of whole-numbered draws.
+#[test]
+fn intervals_cover_the_truth() {
+    let room = if std::env::var_os("UNBIASED_SEED").is_some() { 0.0204 } else { 0.01 };
+    let bounces = |p: f64| Box::new(roulette(p).bounces_by_inversion().unwrap()) as Box<dyn Estimator>;
+    let coins = |p: f64| Box::new(roulette(p).bounces_by_simulation().unwrap()) as Box<dyn Estimator>;
+    let is = |k: f64, bounces: Box<dyn Estimator>| {
+        Box::new(from_fn(move |rng| f64::from(u8::from(bounces.draw(rng) == k)))) as Box<dyn Estimator>
+    };
+    let model = light(0.8, 0.5);
+    let light_by = |q: f64| Box::new(model.roulette(q).unwrap()) as Box<dyn Estimator>;
+    let cubic = from_fn(|rng: &mut Stream| 3.0 * rng.uniform().powi(2));
+    let exponential = Exponential::new(0.37).unwrap();
+    for (name, estimator, truth, n) in [
+        ("P(N = 0), p = 4/5", is(0.0, coins(0.8)), 0.2, 1000),
+        ("P(N = 2), p = 4/5", is(2.0, bounces(0.8)), 0.128, 1000),
+        ("E[N] by coins, p = 4/5", coins(0.8), 4.0, 1000),
+        ("E[N], p = 4/5", bounces(0.8), 4.0, 1000),
+        ("E[N] by coins, p = 1/5", coins(0.2), 0.25, 1000),
+        ("E[N], p = 1/5", bounces(0.2), 0.25, 1000),
+        ("E[N], p = 1/2", bounces(0.5), 1.0, 1000),
+        ("E[N], p = 0.9", bounces(0.9), 9.0, 1000),
+        ("E[N], p = 0.99", bounces(0.99), 99.0, 1000),
+        ("X_rr, X = 3U²", Box::new(roulette(0.8).wrap(cubic)), 1.0, 1000),
+        ("X_rr, X exponential", Box::new(roulette(0.83).wrap(exponential)), 1.0 / 0.37, 1000),
+        ("light, q = 4/5", light_by(0.8), 2.5, 1000),
+        ("light, q*", light_by(model.optimum()), 2.5, 1000),
+    ] {
+        let covers = |i: &u64| {
+            let mut draws = vec![0.0; n];
+            estimator.fill(&mut Stream::new(seed(101), *i), &mut draws);
+            let [low, high] = Estimate::from_draws(&draws).confidence_interval(0.95).unwrap();
+            low <= truth && truth <= high
+        };
+        let share = (0..10_000u64).into_par_iter().filter(covers).count() as f64 / 10_000.0;
+        println!("{name}, n = {n}: {share}");
+        assert!((share - 0.95).abs() <= room, "{name}, n = {n}: {share}");
+    }
 }
 
 /// The same seed gives the same bits in every release that does not say otherwise.
