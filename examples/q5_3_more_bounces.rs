@@ -20,7 +20,7 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
         Answer::new("5.3", "bounces, variance and cost")
             .figure(figure::mean_bounces(100_000, options.seed)?)
             .figure(figure::roulette_trade(&model, q)?)
-            .figure(figure::truncation(&model, q, 200, options.seed)?),
+            .figure(figure::truncation(&model, q, max_k, 200, options.seed)?),
     ];
     for p_rr in [0.2, 0.5, 0.8, 0.9, 0.99] {
         let roulette = Roulette::new(p_rr)?;
@@ -52,16 +52,19 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
             paths.variance() * paths.cost(),
         )));
     }
+    let crossing = model.crossing(q, max_k)?;
+    let overtaken = if crossing.is_finite() {
+        format!("from about {crossing:.0} vertices on roulette has the smaller error")
+    } else {
+        "roulette never has the smaller error at this q, its variance being infinite".to_owned()
+    };
+    let missing = -100.0 * truncated.bias() / model.mean();
     answers.push(
         row("light, paths cut off")
             .demonstration()
             .parameter("max_k", max_k as f64)
             .outcome(&options.run(&truncated, 1_000_000)?)
-            .note(format!(
-                "Paths cut after k ≤ {max_k} miss {:.2} % of the light; from about {:.0} vertices on roulette has the smaller error.",
-                -100.0 * truncated.bias() / model.mean(),
-                model.crossing(q, max_k)?,
-            )),
+            .note(format!("Paths cut after k ≤ {max_k} miss {missing:.2} % of the light; {overtaken}.")),
     );
     Ok(answers)
 }

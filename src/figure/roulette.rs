@@ -84,7 +84,7 @@ pub fn mean_bounces(draws: u64, seed: u64) -> Result<Figure> {
         let found = estimate(&Roulette::new(p)?.bounces_by_inversion()?, Budget::Draws(draws), seed)?;
         measured.push([p, found.mean()]);
     }
-    let curve = (1..=480).map(|i| 0.96 * f64::from(i) / 480.0);
+    let curve = (1..=990).map(|i| f64::from(i) / 1000.0);
     let band = curve.filter_map(|p| {
         of(p).ok().map(|(mean, deviation)| [p, (mean - deviation).max(0.0), mean + deviation])
     });
@@ -131,7 +131,7 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
     let mut panel = Panel::new(
         &format!("ρ = {albedo}, v = {}", model.visibility()),
         Axis::linear("continuation probability q", low, 1.0),
-        Axis::log("variance, cost, product", 0.5, 500.0),
+        Axis::log("value (dimensionless)", 0.5, 500.0),
     );
     panel.shade(low, edge);
     panel
@@ -144,9 +144,9 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
         .text(Ink::Vermilion, [low + 0.02, 2.0 * cost(low + 0.1)], Side::Right, "cost 1/(1 − q)")
         .text(Ink::Blue, [0.93, 0.55 * variance(0.93)], Side::Left, "variance")
         .text(Ink::Green, [edge + 0.06, 300.0], Side::Right, "variance × cost");
-    let mut marked = vec![(q, "● q", Marker::Disc, 1.05)];
+    let mut marked = vec![(q, "● q", Marker::Disc, 1.08)];
     if best > 0.0 && best < 1.0 {
-        marked.push((best, "○ q*", Marker::Ring, 0.7));
+        marked.push((best, "○ q*", Marker::Ring, 0.66));
     }
     for (at, word, marker, row) in marked {
         if product(at).is_finite() {
@@ -172,26 +172,31 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
     .draw()
 }
 
-/// 5.3: the root mean square error against the number of vertices, of roulette and of paths truncated after k ≤ 8 and k ≤ 16.
+/// 5.3: the root mean square error against the number of vertices, of roulette and of paths truncated after k ≤ `max_k` and k ≤ 2 `max_k`.
 ///
 /// # Errors
-/// If q is not in (0, 1).
-pub fn truncation(model: &LightModel, q: f64, replicates: u64, seed: u64) -> Result<Figure> {
+/// If q is not in (0, 1), or `max_k` is too large.
+pub fn truncation(model: &LightModel, q: f64, max_k: u64, replicates: u64, seed: u64) -> Result<Figure> {
+    let [short, long] = [max_k, max_k.saturating_mul(2)];
     let roulette = model.roulette(q)?;
     let root = |square: Result<f64>| square.map_or(f64::NAN, f64::sqrt);
     let mut panel = Panel::new(
         &format!("ρ = {}, v = {}, q = {q}", model.albedo(), model.visibility()),
         Axis::log("vertices C", 10.0, 1e5),
-        Axis::log("RMSE", 0.01, 3.0).with_ticks([(0.01, "0.01"), (0.1, "0.1"), (1.0, "1")]),
+        Axis::log("RMSE (units of the light)", 0.01, 3.0).with_ticks([
+            (0.01, "0.01"),
+            (0.1, "0.1"),
+            (1.0, "1"),
+        ]),
     );
     panel.curve("roulette", Ink::Blue, |c| root(roulette.mean_square_error(c)));
     panel.text(Ink::Blue, [60.0, 1.7 * root(roulette.mean_square_error(60.0))], Side::Right, "roulette");
-    for (max_k, ink) in [(8, Ink::Vermilion), (16, Ink::Green)] {
+    for (max_k, ink) in [(short, Ink::Vermilion), (long, Ink::Green)] {
         let truncated = model.truncated(max_k)?;
         panel.curve(&format!("k ≤ {max_k}"), ink, |c| root(truncated.mean_square_error(c)));
         let plateau = truncated.bias().abs();
         let (at, side) =
-            if max_k == 8 { ([9e4, 1.22 * plateau], Side::Left) } else { ([11.0, plateau], Side::Right) };
+            if max_k == short { ([9e4, 1.22 * plateau], Side::Left) } else { ([11.0, plateau], Side::Right) };
         panel.text(ink, at, side, &format!("k ≤ {max_k}: bias {plateau:.3}"));
         let crossing = model.crossing(q, max_k)?;
         if (10.0..1e5).contains(&crossing) {
@@ -208,7 +213,8 @@ pub fn truncation(model: &LightModel, q: f64, replicates: u64, seed: u64) -> Res
     // each point: the RMSE of `replicates` means of as many paths as take about C vertices
     for (ink, marker, estimator, cost) in [
         (Ink::Blue, Marker::Disc, Box::new(roulette) as Box<dyn Estimator>, roulette.cost()),
-        (Ink::Vermilion, Marker::Square, Box::new(model.truncated(8)?), 9.0),
+        (Ink::Vermilion, Marker::Square, Box::new(model.truncated(short)?), model.truncated(short)?.cost()),
+        (Ink::Green, Marker::Triangle, Box::new(model.truncated(long)?), model.truncated(long)?.cost()),
     ] {
         let mut points = Vec::new();
         for paths in
@@ -227,7 +233,7 @@ pub fn truncation(model: &LightModel, q: f64, replicates: u64, seed: u64) -> Res
         name: "5_3_truncation",
         title: "Truncated paths stop improving; roulette overtakes them".into(),
         description: format!(
-            "Root mean square error against the number of vertices C, both logarithmic, for ρ = {}, v = {}. Roulette with q = {q} falls as 1/√C. Paths cut after k ≤ 8 and k ≤ 16 level off at \
+            "Root mean square error against the number of vertices C, both logarithmic, for ρ = {}, v = {}. Roulette with q = {q} falls as 1/√C. Paths cut after k ≤ {short} and k ≤ {long} level off at \
              their bias; the crossings are marked. Points: {replicates} runs each, seeds from {seed}.",
             model.albedo(),
             model.visibility()

@@ -31,7 +31,7 @@ pub(super) const QUESTIONS: &[Question] = &[
             Wrong { answer: "P(N = 2) = 16/25", slip: "the stop forgotten: that is P(N ≥ 2)" },
         ],
         on_the_original: Some(
-            "“Geometric” counts trials there (mean 1/p), and failures in some libraries (mean 1/p − 1): look before using one.",
+            "p_rr must lie in (0, 1], since p_rr = 0 loses all light, and the coin must be independent of X; the original says neither. “Geometric” counts trials there (mean 1/p), and failures in some libraries (mean 1/p − 1): look before using one.",
         ),
         example: "q5_1_bounces",
         module: "roulette",
