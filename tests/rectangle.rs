@@ -427,11 +427,15 @@ fn closed_forms_hold_at_the_ends_of_the_range() {
         (Integrand::Gaussian, [2.0, 2.0 + 1e-9], [0.0, 1.0], Some(1.3678562234396564e-11), None),
         (Integrand::Gaussian, [20.0, 26.0], [-1.0, 0.5], Some(5.777112132202588e-176), Some(0.0)),
         (Integrand::Gaussian, [25.0, 25.0 + 1.0 / (1u64 << 40) as f64], [0.0, 1.0], Some(2.500157262791068e-284), Some(0.0)),
+        (Integrand::Gaussian, [20.3, 26.1], [-1.0, 0.5], Some(3.1962467416788425e-181), Some(0.0)),
+        (Integrand::Gaussian, [-26.7, -25.9], [0.0, 1.0], Some(6.7528028411152416e-294), Some(0.0)),
         (Integrand::Gaussian, [26.5, 1e10], [0.0, 1.0], Some(1.4633017404444406e-307), Some(0.0)),
         (Integrand::Gaussian, [100.0, 200.0], [0.0, 1.0], Some(0.0), Some(0.0)),
         (Integrand::Disc, [-tiny, tiny], [-1.0, 1.0], Some(4e-300), Some(0.0)),
         (Integrand::Disc, [1.5, 1e300], [1.5, 2.0], Some(0.0), Some(0.0)),
         (Integrand::Disc, [-2.0, 1e300], [-2.0, 2.0], Some(4.0 * PI), Some(16.0 * PI * 1e300)),
+        (Integrand::Disc, [1.8, 3.0], [0.0, 1.0], None, None),
+        (Integrand::Disc, [2.1, 3.0], [-1.0, 1.0], Some(0.0), Some(0.0)),
         (Integrand::Disc, [-2.0, 1.9], [-2.0, 2.0], None, None),
     ];
     for (f, x, y, integral, variance) in rows {
