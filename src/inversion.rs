@@ -139,6 +139,13 @@ impl Estimator for Exponential {
     fn draw(&self, rng: &mut Stream) -> f64 {
         self.sample(rng)
     }
+
+    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
+        rng.fill_uniform(draws);
+        for draw in draws {
+            *draw = (1.0 - *draw).ln().abs() / self.rate;
+        }
+    }
 }
 
 /// The inverse F⁻(u) = inf{x : F(x) ≥ u} of any one-dimensional cdf, smooth or with jumps and flats, found by bisection.

@@ -343,7 +343,12 @@ fn bad_input_gets_one_sentence_an_exit_code_and_leaves_nothing_behind() {
         ("q1_3_axes", &["solve"], 2, "unexpected argument"),
         ("q2_1_square", &["--x-low", "2"], 2, "must be"),
         ("q2_1_square", &["--y-high", "inf"], 2, "must be"),
-        ("q2_1_square", &["--x-low=-1e300", "--x-high=1e300", "--y-low=-1e300", "--y-high=1e300"], 2, "must be"),
+        (
+            "q2_1_square",
+            &["--x-low=-1e300", "--x-high=1e300", "--y-low=-1e300", "--y-high=1e300"],
+            2,
+            "must be",
+        ),
         ("q2_1_square", &["--n", "0"], 2, "must be"),
         ("q2_1_square", &["--n", "2.5"], 2, "--n takes a whole number, not 2.5"),
         ("q3_2_uniform_sky", &["--albedo", "1.1"], 2, "albedo"),

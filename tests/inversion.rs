@@ -181,6 +181,16 @@ fn drawing_is_the_inverse_cdf_of_the_streams_uniform_number() {
 }
 
 #[test]
+fn filling_gives_the_same_bits_as_drawing() {
+    let exponential = exponential(0.37);
+    let (mut one, mut many) = (Stream::new(common::seed(18), 0), Stream::new(common::seed(18), 0));
+    let mut filled = [0.0; 1000];
+    exponential.fill(&mut many, &mut filled);
+    assert!(filled.iter().all(|draw| draw.to_bits() == exponential.draw(&mut one).to_bits()));
+    assert_eq!(one.random_numbers(), many.random_numbers());
+}
+
+#[test]
 fn a_seeds_samples_are_pinned() {
     let exponential = exponential(0.37);
     let mut rng = Stream::new(1, 0);

@@ -957,3 +957,12 @@ fn golden_values() {
     );
     assert_eq!(four(&light(0.61, 0.3).truncated(3).unwrap()), [0.3721, 0.0, 0.3721, 0.0]);
 }
+
+#[test]
+fn filling_with_bounces_gives_the_same_bits_as_drawing() {
+    let bounces = Roulette::new(0.83).unwrap().bounces_by_inversion().unwrap();
+    let (mut one, mut many) = (Stream::new(seed(900), 0), Stream::new(seed(900), 0));
+    let mut filled = [0.0; 1000];
+    bounces.fill(&mut many, &mut filled);
+    assert!(filled.iter().all(|draw| draw.to_bits() == bounces.draw(&mut one).to_bits()));
+}
