@@ -1,0 +1,9 @@
+//! Is an estimator unbiased? Is a sampler distributed as claimed? And if not, which classic mistake does it look like?
+//!
+//! Verdicts here have proven error probabilities at every sample size: nothing rests on the central limit theorem, and
+//! what is only approximate says so in its name.
+
+mod unbiased;
+mod wealth;
+
+pub use unbiased::{Report, Unbiased, Verdict, unbiased};
