@@ -58,6 +58,12 @@ pub enum Error {
         /// The range claimed.
         range: [f64; 2],
     },
+    /// An estimator is no function of a few uniform numbers.
+    #[error("the estimator cannot be integrated: {reason}")]
+    NotIntegrable {
+        /// Where it fails.
+        reason: String,
+    },
     /// Too few draws for the statistic asked for.
     #[error("{statistic} needs at least {needed} draws, not {draws}")]
     TooFewDraws {

@@ -3,7 +3,9 @@
 //! Verdicts here have proven error probabilities at every sample size: nothing rests on the central limit theorem, and
 //! what is only approximate says so in its name.
 
+mod exactly;
 mod unbiased;
 mod wealth;
 
+pub use exactly::{Exact, exactly};
 pub use unbiased::{Report, Unbiased, Verdict, unbiased};
