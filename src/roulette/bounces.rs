@@ -1,0 +1,163 @@
+//! The number of bounces N: its laws in closed form, and two ways to draw it.
+
+use rand::Rng;
+use rand::distr::{Distribution, StandardUniform};
+
+use super::{P_RR, Roulette, draws_for, one_minus_power, power};
+use crate::error::{Result, require};
+use crate::run::Estimator;
+use crate::stream::Stream;
+
+/// The law of N. At p_rr = 1 a path never ends: N is infinite, so that every P(N = k) is 0.
+impl Roulette {
+    /// P(N = k) = pᵏ (1 − p).
+    pub fn pmf(&self, k: u64) -> f64 {
+        power(self.p_rr, k.into()) * (1.0 - self.p_rr)
+    }
+
+    /// P(N ≤ k) = 1 − pᵏ⁺¹, by `exp_m1`: for p near 1 the difference has no digits.
+    pub fn cdf(&self, k: u64) -> f64 {
+        one_minus_power(self.p_rr, u128::from(k) + 1)
+    }
+
+    /// P(N > k) = pᵏ⁺¹, where 1 − P(N ≤ k) has no digits left for large k.
+    pub fn survival(&self, k: u64) -> f64 {
+        power(self.p_rr, u128::from(k) + 1)
+    }
+
+    /// E\[N\] = p/(1 − p), which grows without bound: +∞ at p = 1.
+    pub fn mean(&self) -> f64 {
+        self.p_rr / (1.0 - self.p_rr)
+    }
+
+    /// Var N = p/(1 − p)², +∞ at p = 1.
+    pub fn variance(&self) -> f64 {
+        self.mean() / (1.0 - self.p_rr)
+    }
+
+    /// The smallest k with [`cdf`](Self::cdf)(k) ≥ u, found by bisection: a logarithm's guess can be one off at a step.
+    ///
+    /// `u64::MAX` stands for infinity, the answer at u = 1 (no number of bounces is certain to be enough), and for every u > 0 at p = 1.
+    ///
+    /// # Errors
+    /// If u is not in \[0, 1\].
+    ///
+    /// ```
+    /// let roulette = unbiased::roulette::Roulette::new(0.5)?;
+    /// assert_eq!(roulette.quantile(0.75)?, 1);
+    /// assert_eq!(roulette.quantile(0.76)?, 2);
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    pub fn quantile(&self, u: f64) -> Result<u64> {
+        require("the probability u", u, (0.0..=1.0).contains(&u), "in [0, 1]")?;
+        // the rounded cdf reaches 1, the exact one never does
+        if u >= 1.0 {
+            return Ok(u64::MAX);
+        }
+        let (mut low, mut high) = (0, u64::MAX);
+        while low < high {
+            let middle = low.midpoint(high);
+            if self.cdf(middle) < u {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        Ok(high)
+    }
+
+    /// N drawn as it happens: one coin after another. Expected work: 1/(1 − p) coins a draw.
+    ///
+    /// # Errors
+    /// If p_rr = 1: a draw would never end.
+    ///
+    /// ```
+    /// use unbiased::{Budget, estimate, roulette::Roulette};
+    ///
+    /// let roulette = Roulette::new(0.8)?;
+    /// let estimate = estimate(&roulette.bounces_by_simulation()?, Budget::Draws(100_000), 1)?;
+    /// assert!(estimate.z(4.0).unwrap().abs() < 5.0);
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    pub fn bounces_by_simulation(&self) -> Result<BouncesBySimulation> {
+        self.require_an_end()?;
+        Ok(BouncesBySimulation { roulette: *self })
+    }
+
+    /// N drawn in one step, ⌊ln(1 − U)/ln p⌋, whatever p is.
+    ///
+    /// # Errors
+    /// If p_rr = 1: N is infinite.
+    ///
+    /// ```
+    /// use unbiased::{Budget, estimate, roulette::Roulette};
+    ///
+    /// let roulette = Roulette::new(0.8)?;
+    /// let estimate = estimate(&roulette.bounces_by_inversion()?, Budget::Draws(100_000), 1)?;
+    /// assert!(estimate.z(4.0).unwrap().abs() < 5.0);
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    pub fn bounces_by_inversion(&self) -> Result<BouncesByInversion> {
+        self.require_an_end()?;
+        Ok(BouncesByInversion { ln_p: self.p_rr.ln() })
+    }
+
+    fn require_an_end(&self) -> Result<f64> {
+        require(P_RR, self.p_rr, self.p_rr < 1.0, "below 1 (at 1 the bounces never end)")
+    }
+}
+
+/// N by flipping coins; see [`Roulette::bounces_by_simulation`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BouncesBySimulation {
+    roulette: Roulette,
+}
+
+impl Distribution<u64> for BouncesBySimulation {
+    #[inline]
+    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> u64 {
+        let mut bounces = 0;
+        while self.roulette.continues(rng) {
+            bounces += 1;
+        }
+        bounces
+    }
+}
+
+impl Estimator for BouncesBySimulation {
+    #[inline]
+    fn draw(&self, rng: &mut Stream) -> f64 {
+        let bounces: u64 = self.sample(rng);
+        bounces as f64
+    }
+
+    fn draws_per_block(&self) -> u64 {
+        draws_for(1.0 + self.roulette.mean())
+    }
+}
+
+/// N = ⌊ln(1 − U)/ln p⌋; see [`Roulette::bounces_by_inversion`].
+///
+/// # The ends
+/// U = k·2⁻⁵³ is never 1, so the tail of N ends at 53 ln 2/−ln p, beyond which its probability is below 2⁻⁵³: at 164 bounces for p = 4/5.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BouncesByInversion {
+    ln_p: f64,
+}
+
+impl Distribution<u64> for BouncesByInversion {
+    #[inline]
+    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> u64 {
+        let u: f64 = StandardUniform.sample(rng);
+        // at most 53 ln 2/2⁻⁵³ = 3.3e17, and a cast cuts as floor does, but faster; to i64 faster than to u64
+        ((1.0 - u).ln() / self.ln_p) as i64 as u64
+    }
+}
+
+impl Estimator for BouncesByInversion {
+    #[inline]
+    fn draw(&self, rng: &mut Stream) -> f64 {
+        let bounces: u64 = self.sample(rng);
+        bounces as i64 as f64
+    }
+}

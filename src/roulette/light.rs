@@ -1,0 +1,289 @@
+//! What roulette costs and buys: a model of light paths in which all of it has a closed form.
+
+use super::{coin, draws_for, one_minus_power, power, square_over};
+use crate::error::{Result, require, require_count};
+use crate::run::Estimator;
+use crate::stream::Stream;
+
+/// A model of light paths: vertex k = 0, 1, … sees the light with probability v, independently of the others, and what it sees
+/// has been reflected k times with albedo ρ. The light is Σ ρᵏ v = v/(1 − ρ), dimensionless: in units of the light's radiance.
+///
+/// Two rival estimators of it end the sum: [`roulette`](Self::roulette) at random, without bias, and [`truncated`](Self::truncated)
+/// after a set number of vertices, with bias but less variance. Their mean square errors at equal numbers of vertices cross
+/// at [`crossing`](Self::crossing). (Worksheet 5, "what roulette costs and buys".)
+///
+/// ```
+/// use unbiased::roulette::LightModel;
+///
+/// let model = LightModel::new(0.8, 0.5)?;
+/// let paths = model.roulette(0.8)?;
+/// assert!((paths.variance() * paths.cost() - 31.25).abs() < 1e-12);
+/// assert!((model.optimum() - 0.898).abs() < 1e-4);
+/// assert_eq!(model.roulette(0.2)?.variance(), f64::INFINITY);
+/// assert_eq!(model.crossing(0.8, 8)?.floor(), 223.0);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LightModel {
+    albedo: f64,
+    visibility: f64,
+}
+
+impl LightModel {
+    /// The model with albedo ρ and probability v that a vertex sees the light.
+    ///
+    /// # Errors
+    /// If ρ is not in \[0, 1), or v is not in \[0, 1\].
+    pub fn new(albedo: f64, visibility: f64) -> Result<Self> {
+        require("the albedo ρ", albedo, (0.0..1.0).contains(&albedo), "in [0, 1)")?;
+        require("the visibility v", visibility, (0.0..=1.0).contains(&visibility), "in [0, 1]")?;
+        // + 0.0 takes the sign from −0
+        Ok(Self { albedo: albedo + 0.0, visibility: visibility + 0.0 })
+    }
+
+    /// The albedo ρ.
+    pub fn albedo(&self) -> f64 {
+        self.albedo
+    }
+
+    /// The probability v that a vertex sees the light.
+    pub fn visibility(&self) -> f64 {
+        self.visibility
+    }
+
+    /// The truth v/(1 − ρ).
+    pub fn mean(&self) -> f64 {
+        self.visibility / (1.0 - self.albedo)
+    }
+
+    /// Paths that go on with probability q after every vertex and weigh what vertex k sees with (ρ/q)ᵏ.
+    ///
+    /// # Errors
+    /// If q is not in (0, 1): a path never ends at 1, and sees one vertex only at 0, which is allowed where nothing follows (ρ = 0 or v = 0).
+    pub fn roulette(&self, q: f64) -> Result<RoulettePaths> {
+        let nothing_follows = self.albedo == 0.0 || self.visibility == 0.0;
+        let ok = (q > 0.0 || q == 0.0 && nothing_follows) && q < 1.0;
+        require("the continuation probability q", q, ok, "in (0, 1) (0 is biased unless ρ v = 0)")?;
+        Ok(RoulettePaths { model: *self, q: q + 0.0 })
+    }
+
+    /// Paths of max_k + 1 vertices, k = 0 … max_k.
+    ///
+    /// # Errors
+    /// If max_k is more than 10⁹: every draw visits every vertex.
+    pub fn truncated(&self, max_k: u64) -> Result<TruncatedPaths> {
+        let max_k = require_count("the last vertex of a path", max_k, max_k <= 1_000_000_000, "at most 10⁹")?;
+        Ok(TruncatedPaths { model: *self, max_k })
+    }
+
+    /// The q* in [ρ, 1] at which roulette's variance × cost is least.
+    ///
+    /// With A = v²ρ²/(1 − ρ)² and B = v(1 − v) it is the root of (B − A)q² + 2Aq − (A + Bρ²) = 0, computed as
+    /// ρ(a + b)/(aρ + √(b(a(1 − ρ²) + b))) with a = v/(1 − ρ)² and b = 1 − v: all terms are positive, A = B is no
+    /// special case, and neither are
+    /// - ρ = 0: q* = 0, as only the first vertex counts;
+    /// - v = 1: q* = 1, out of reach, as variance × cost = A/(q − ρ²) falls all the way to it;
+    /// - v = 0: every q has no variance, and q* = ρ is the limit for v → 0.
+    pub fn optimum(&self) -> f64 {
+        let rho = self.albedo;
+        if rho == 0.0 {
+            return 0.0; // for v = 1, too, where the formula is 0/0
+        }
+        let a = self.mean() / (1.0 - rho);
+        let b = 1.0 - self.visibility;
+        let root = rho * (a + b) / (a * rho + (b * (a * (1.0 - rho) * (1.0 + rho) + b)).sqrt());
+        root.clamp(rho, 1.0)
+    }
+
+    /// The number of vertices C from which on roulette with q has a smaller mean square error than truncation after max_k:
+    /// C = (Var × cost of roulette − Var × cost of truncation)/bias². 0 if it always has (or neither has any), +∞ if it never has.
+    ///
+    /// # Errors
+    /// Those of [`roulette`](Self::roulette) and [`truncated`](Self::truncated).
+    pub fn crossing(&self, q: f64, max_k: u64) -> Result<f64> {
+        let (roulette, truncated) = (self.roulette(q)?, self.truncated(max_k)?);
+        let lead = roulette.excess() - truncated.excess();
+        if lead <= 0.0 || self.visibility == 0.0 {
+            return Ok(0.0);
+        }
+        // one factor after another: the bias squared may underflow
+        Ok(lead * (1.0 - self.albedo) / truncated.missing() / truncated.bias().abs())
+    }
+
+    /// v(1 − v), the variance of what one vertex sees.
+    fn spread(&self) -> f64 {
+        self.visibility * (1.0 - self.visibility)
+    }
+}
+
+/// Paths that end by roulette, an unbiased estimator of [`LightModel::mean`]; see [`LightModel::roulette`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoulettePaths {
+    model: LightModel,
+    q: f64,
+}
+
+impl RoulettePaths {
+    /// The continuation probability q.
+    pub fn q(&self) -> f64 {
+        self.q
+    }
+
+    /// The mean v/(1 − ρ), which is the truth.
+    pub fn mean(&self) -> f64 {
+        self.model.mean()
+    }
+
+    /// The variance of one path, (A(1 − q) + Bq)/(q − ρ²) with A = v²ρ²/(1 − ρ)² and B = v(1 − v); **+∞ for q ≤ ρ²**,
+    /// where the weights grow faster than long paths get rare.
+    pub fn variance(&self) -> f64 {
+        let (later, growth) = self.growth();
+        (later * self.mean() * self.mean() * (1.0 - self.q) + self.model.spread()) * growth
+    }
+
+    /// The expected number of vertices of one path, 1/(1 − q).
+    pub fn cost(&self) -> f64 {
+        1.0 / (1.0 - self.q)
+    }
+
+    /// The mean square error of the mean of as many paths as take C vertices: variance × cost / C.
+    ///
+    /// # Errors
+    /// If C is not positive and finite.
+    pub fn mean_square_error(&self, vertices: f64) -> Result<f64> {
+        Ok(self.variance() * self.cost() / require_vertices(vertices)?)
+    }
+
+    /// Variance × cost / v − (1 − v), written without that difference, which may have no digits.
+    fn excess(&self) -> f64 {
+        let (later, growth) = self.growth();
+        let LightModel { albedo, visibility } = self.model;
+        let odds = self.q / (1.0 - self.q);
+        (later * self.mean() / (1.0 - albedo) + (1.0 - visibility) * (odds + later)) * growth
+    }
+
+    /// ρ²/q and 1/(1 − ρ²/q), the sum of its powers: +∞ for q ≤ ρ².
+    fn growth(&self) -> (f64, f64) {
+        let LightModel { albedo, visibility } = self.model;
+        if albedo == 0.0 || visibility == 0.0 {
+            return (0.0, 1.0); // only the first vertex, if any, sees light
+        }
+        let (rho, q) = square_over(albedo, self.q);
+        let margin = rho.mul_add(-rho, q); // q − ρ², rounded once
+        (rho / q * rho, if margin > 0.0 { q / margin } else { f64::INFINITY })
+    }
+}
+
+impl Estimator for RoulettePaths {
+    #[inline]
+    fn draw(&self, rng: &mut Stream) -> f64 {
+        let LightModel { albedo, visibility } = self.model;
+        let (mut sum, mut weight, mut vertices) = (0.0, 1.0, 1);
+        loop {
+            if coin(rng, visibility) {
+                sum += weight;
+            }
+            if !coin(rng, self.q) {
+                break;
+            }
+            weight *= albedo / self.q;
+            vertices += 1;
+        }
+        rng.count_evaluations(vertices);
+        sum
+    }
+
+    fn draws_per_block(&self) -> u64 {
+        draws_for(self.cost())
+    }
+}
+
+/// Paths that end after a set number of vertices, a biased estimator of [`LightModel::mean`]; see [`LightModel::truncated`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TruncatedPaths {
+    model: LightModel,
+    max_k: u64,
+}
+
+impl TruncatedPaths {
+    /// The last vertex K.
+    pub fn max_k(&self) -> u64 {
+        self.max_k
+    }
+
+    /// The mean v(1 − ρᴷ⁺¹)/(1 − ρ).
+    pub fn mean(&self) -> f64 {
+        self.model.visibility * self.geometric_sum()
+    }
+
+    /// How far the mean is from the truth, −v ρᴷ⁺¹/(1 − ρ): a fraction ρᴷ⁺¹ of the light is missing.
+    pub fn bias(&self) -> f64 {
+        0.0 - self.model.mean() * self.missing() // where nothing is missing it is 0, not −0
+    }
+
+    /// The variance of one path, v(1 − v)(1 − ρ²⁽ᴷ⁺¹⁾)/(1 − ρ²).
+    pub fn variance(&self) -> f64 {
+        self.model.spread() * self.sum_of_squares()
+    }
+
+    /// The number of vertices of every path, K + 1.
+    pub fn cost(&self) -> f64 {
+        self.vertices() as f64
+    }
+
+    /// The mean square error of the mean of as many paths as take C vertices: bias² + variance × cost / C.
+    ///
+    /// # Errors
+    /// If C is not positive and finite.
+    pub fn mean_square_error(&self, vertices: f64) -> Result<f64> {
+        Ok(self.bias() * self.bias() + self.variance() * self.cost() / require_vertices(vertices)?)
+    }
+
+    fn vertices(&self) -> u64 {
+        self.max_k + 1
+    }
+
+    /// Variance × cost / v − (1 − v).
+    fn excess(&self) -> f64 {
+        (1.0 - self.model.visibility) * (self.cost() * self.sum_of_squares() - 1.0)
+    }
+
+    /// ρᴷ⁺¹
+    fn missing(&self) -> f64 {
+        power(self.model.albedo, self.vertices().into())
+    }
+
+    /// 1 + ρ + … + ρᴷ = (1 − ρᴷ⁺¹)/(1 − ρ)
+    fn geometric_sum(&self) -> f64 {
+        one_minus_power(self.model.albedo, self.vertices().into()) / (1.0 - self.model.albedo)
+    }
+
+    /// 1 + ρ² + … + ρ²ᴷ = (1 − ρᴷ⁺¹)(1 + ρᴷ⁺¹)/((1 − ρ)(1 + ρ))
+    fn sum_of_squares(&self) -> f64 {
+        self.geometric_sum() * ((1.0 + self.missing()) / (1.0 + self.model.albedo))
+    }
+}
+
+impl Estimator for TruncatedPaths {
+    #[inline]
+    fn draw(&self, rng: &mut Stream) -> f64 {
+        let LightModel { albedo, visibility } = self.model;
+        let (mut sum, mut weight) = (0.0, 1.0);
+        for _ in 0..self.vertices() {
+            if coin(rng, visibility) {
+                sum += weight;
+            }
+            weight *= albedo;
+        }
+        rng.count_evaluations(self.vertices());
+        sum
+    }
+
+    fn draws_per_block(&self) -> u64 {
+        draws_for(self.cost())
+    }
+}
+
+fn require_vertices(vertices: f64) -> Result<f64> {
+    require("the number of vertices", vertices, vertices > 0.0 && vertices.is_finite(), "positive and finite")
+}

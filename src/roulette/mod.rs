@@ -1,0 +1,177 @@
+//! Section 5: Russian roulette, which ends paths at random and loses nothing on average.
+//!
+//! X_rr = X/p_rr with probability p_rr, else 0, so E\[X_rr\] = E\[X\]. [`Roulette`] flips the coin, [`Roulette::wrap`] plays it on
+//! any estimator, the number of bounces N that it allows has its laws in closed form, and [`LightModel`] says exactly
+//! what roulette costs and what it buys.
+
+use rand::Rng;
+use rand::distr::{Distribution, StandardUniform};
+
+use crate::error::{Result, require};
+use crate::run::Estimator;
+use crate::stream::Stream;
+
+mod bounces;
+mod light;
+
+pub use bounces::{BouncesByInversion, BouncesBySimulation};
+pub use light::{LightModel, RoulettePaths, TruncatedPaths};
+
+/// Russian roulette with continuation probability p_rr.
+///
+/// A path that goes on with probability p_rr after every bounce makes N ≥ 0 bounces, P(N = k) = p_rrᵏ (1 − p_rr): the
+/// *failures* before the first success of a coin that ends the path with probability 1 − p_rr. Some libraries call the number of
+/// *trials*, N + 1, geometric instead. (Worksheet 5.1 to 5.3; Arvo & Kirk, "Particle transport and image synthesis", 1990;
+/// *Physically Based Rendering*, 4th ed., section 2.2.4.)
+///
+/// ```
+/// use unbiased::roulette::Roulette;
+///
+/// let roulette = Roulette::new(0.75)?;
+/// assert_eq!(roulette.pmf(0), 1.0 / 4.0);
+/// assert_eq!(roulette.pmf(2), 9.0 / 64.0);
+/// assert_eq!(roulette.mean(), 3.0);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Roulette {
+    p_rr: f64,
+}
+
+impl Roulette {
+    /// Roulette that continues with probability p_rr; 1 is no roulette at all.
+    ///
+    /// # Errors
+    /// If p_rr is not in (0, 1]. At p_rr = 0 every draw is 0, which is biased unless E\[X\] = 0.
+    pub fn new(p_rr: f64) -> Result<Self> {
+        let ok = p_rr > 0.0 && p_rr <= 1.0;
+        Ok(Self { p_rr: require(P_RR, p_rr, ok, "in (0, 1] (0 is biased unless E[X] = 0)")? })
+    }
+
+    /// The continuation probability p_rr.
+    pub fn p_rr(&self) -> f64 {
+        self.p_rr
+    }
+
+    /// Flips the coin: true, to continue, with probability p_rr exactly, for every p_rr that `f64` can hold.
+    ///
+    /// ```
+    /// use unbiased::{Stream, roulette::Roulette};
+    ///
+    /// let (roulette, mut rng) = (Roulette::new(0.8)?, Stream::new(1, 0));
+    /// let bounces = std::iter::repeat_with(|| roulette.continues(&mut rng)).take_while(|on| *on).count();
+    /// assert!(bounces < 164);
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    #[inline]
+    pub fn continues<R: Rng + ?Sized>(&self, rng: &mut R) -> bool {
+        coin(rng, self.p_rr)
+    }
+
+    /// The estimator X_rr: X/p_rr with probability p_rr, else 0 without drawing X.
+    ///
+    /// The coin's random number is its own, so it is independent of X.
+    ///
+    /// ```
+    /// use unbiased::{Budget, estimate, inversion::Exponential, roulette::Roulette};
+    ///
+    /// let x = Exponential::new(0.37)?;
+    /// let x_rr = Roulette::new(0.83)?.wrap(x);
+    /// let estimate = estimate(&x_rr, Budget::Draws(100_000), 1)?;
+    /// assert!(estimate.z(x.mean()).unwrap().abs() < 5.0);
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    pub fn wrap<X: Estimator>(&self, x: X) -> RussianRoulette<X> {
+        RussianRoulette { roulette: *self, x }
+    }
+
+    /// The variance of X_rr for an X with this mean μ and variance σ²: E\[X²\]/p − μ² = σ²/p + μ² (1 − p)/p.
+    ///
+    /// It drops X's cost to a fraction p, but p·Var X_rr = σ² + μ² (1 − p) ≥ σ²: roulette on one X alone never lowers variance × cost.
+    ///
+    /// # Errors
+    /// If the mean is not finite, or the variance is negative or NaN.
+    ///
+    /// ```
+    /// let roulette = unbiased::roulette::Roulette::new(0.25)?;
+    /// assert_eq!(roulette.wrapped_variance(2.0, 1.0)?, 16.0); // (1 + 4)/0.25 − 4
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    pub fn wrapped_variance(&self, mean: f64, variance: f64) -> Result<f64> {
+        require("the mean of X", mean, mean.is_finite(), "finite")?;
+        require("the variance of X", variance, variance >= 0.0, "0 or positive")?;
+        let (mean, p) = square_over(mean, self.p_rr);
+        Ok(variance / self.p_rr + mean * (1.0 - self.p_rr) / p * mean)
+    }
+}
+
+const P_RR: &str = "the continuation probability p_rr";
+
+/// The estimator X_rr = X/p_rr with probability p_rr, else 0; see [`Roulette::wrap`].
+///
+/// Its mean is X's, its variance [`Roulette::wrapped_variance`]. Where X/p_rr is beyond `f64` a draw is infinite, which ends a
+/// run with an error.
+#[derive(Debug, Clone, Copy)]
+pub struct RussianRoulette<X> {
+    roulette: Roulette,
+    x: X,
+}
+
+impl<X: Estimator> Estimator for RussianRoulette<X> {
+    #[inline]
+    fn draw(&self, rng: &mut Stream) -> f64 {
+        // divided, not multiplied by 1/p_rr: that is infinite for p_rr < 5.6e-309
+        if self.roulette.continues(rng) { self.x.draw(rng) / self.roulette.p_rr } else { 0.0 }
+    }
+
+    fn draws_per_block(&self) -> u64 {
+        self.x.draws_per_block()
+    }
+}
+
+/// True with probability p exactly, for any p in \[0, 1\].
+///
+/// U < p alone would round p up to the grid k·2⁻⁵³: p = 1e-300 to 1.1e-16. So where U is the last point of the grid below p,
+/// another number decides with the part of p that lies beyond it.
+#[inline]
+fn coin<R: Rng + ?Sized>(rng: &mut R, mut p: f64) -> bool {
+    const GRID: f64 = (1u64 << 53) as f64;
+    loop {
+        let u: f64 = StandardUniform.sample(rng);
+        let beyond = (p - u) * GRID; // exact where it lies between 0 and 1
+        if beyond <= 0.0 {
+            return false;
+        }
+        if beyond >= 1.0 {
+            return true;
+        }
+        p = beyond;
+    }
+}
+
+/// pⁿ, by powers of `f64`: exp(n ln p) is off by n·ln p ulp.
+fn power(p: f64, n: u128) -> f64 {
+    if n <= 1 << 53 {
+        p.powf(n as f64)
+    } else {
+        // such an n may have no f64, but its upper 53 bits and the rest have
+        let low = n & 0x7ff;
+        p.powf((n - low) as f64) * p.powf(low as f64)
+    }
+}
+
+/// 1 − pⁿ without cancellation, for n ≥ 1.
+fn one_minus_power(p: f64, n: u128) -> f64 {
+    if n == 1 { 1.0 - p } else { (n as f64 * p.ln()).exp_m1().abs() }
+}
+
+/// x and p scaled so that x/p·x is the same, and over- or underflows only where x²/p itself does.
+fn square_over(x: f64, p: f64) -> (f64, f64) {
+    const SCALE: f64 = (1u128 << 127) as f64 * (1u128 << 127) as f64 * 4.0; // 2²⁵⁶
+    if p < 1.0 / (SCALE * SCALE) { (x * SCALE, p * SCALE * SCALE) } else { (x, p) }
+}
+
+/// How many draws share a stream where each is this much work: a block stays a matter of milliseconds.
+fn draws_for(work: f64) -> u64 {
+    (f64::from(1 << 18) / work).clamp(1.0, f64::from(1 << 14)) as u64
+}
