@@ -9,7 +9,7 @@ use crate::stream::Stream;
 ///
 /// # Contract
 /// `pdf` is the density of what `sample` draws: it integrates to 1 over the points that can be drawn and is
-/// positive at every one of them. Units are those of 1/[point].
+/// positive at every one of them. Units are those of 1/\[point\].
 pub trait Density: Distribution<Self::Point> + Sync {
     /// What is drawn: a number, a point of the plane, a direction.
     type Point;

@@ -36,7 +36,7 @@ const DOWN: f64 = f64::from_bits((1023 - STEP as u64) << 52);
 /// assert_eq!(Estimate::from_draws(&[7.0]).variance(), None); // one draw has no variance
 /// ```
 ///
-/// A draw that is NaN or infinite makes the mean NaN or infinite; [`crate::estimate`] ends with an error instead.
+/// A draw that is NaN or infinite makes the mean NaN or infinite; [`crate::estimate()`] ends with an error instead.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     draws: u64,

@@ -176,7 +176,7 @@ impl Hemisphere {
         let u = match self {
             Self::Uniform if cos > 0.5 => sin_squared / (1.0 + cos),
             Self::Uniform => 1.0 - cos,
-            Self::Cosine if cos > 0.5 => sin_squared,
+            Self::Cosine if sin_squared < 0.5 => sin_squared,
             Self::Cosine => 1.0 - cos * cos,
         };
         Ok([u, direction.phi() / TAU])

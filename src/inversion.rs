@@ -35,7 +35,7 @@ pub struct Exponential {
 }
 
 impl Exponential {
-    /// The exponential distribution with rate λ, in 1/[x].
+    /// The exponential distribution with rate λ, in 1/\[x\].
     ///
     /// # Errors
     /// If λ is not positive and finite.

@@ -14,6 +14,7 @@ use approx::assert_relative_eq;
 use proptest::prelude::*;
 use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
+use rayon::prelude::*;
 use unbiased::hemisphere::{Direction, Hemisphere};
 use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
 use unbiased::{Budget, Density, Error, Estimate, Estimator, Stream, estimate, from_fn};
@@ -67,7 +68,7 @@ type Row = (f64, f64, [f64; 3]);
 
 const INF: f64 = f64::INFINITY;
 
-const POWERS: [Row; 24] = [
+const POWERS: [Row; 26] = [
     (0.0, 1.0, [1.0, 0.3333333333333333, 0.0]),
     (1.0, 1.0, [0.6666666666666666, 0.35555555555555557, 0.05555555555555555]),
     (-0.5, 0.61, [0.8133333333333334, 0.08268888888888888, 0.08268888888888888]),
@@ -78,6 +79,8 @@ const POWERS: [Row; 24] = [
     (-0.999999999, 1.0, [1.999999998, 3.9999997577445526e-18, 1000000024.2819322]),
     (-1.5, 0.61, [2.44, INF, INF]),
     (-1.4999999999999996, 0.61, [2.4399999999999977, 1675789421344555.5, INF]),
+    (-1.05, 0.61, [1.2842105263157895, 0.004581101877500778, INF]),
+    (-1.55, 0.61, [2.7111111111111112, INF, INF]),
     (-1.9, 0.61, [12.199999999999989, INF, INF]),
     (-1.9999999999999996, 0.61, [2747195772696002.5, INF, INF]),
     (1e-09, 0.61, [0.609999999695, 0.12403333337467777, 9.302499981395001e-20]),
@@ -94,10 +97,11 @@ const POWERS: [Row; 24] = [
     (-1.2, 0.0, [0.0, 0.0, 0.0]),
 ];
 
-const RINGS: [Row; 12] = [
+const RINGS: [Row; 13] = [
     (1.0, 1.0, [1.0, 0.3333333333333333, 0.0]),
     (0.9999999999999999, 1.0, [0.9999999999999998, 0.3333333333333333, 2.2204460492503126e-16]),
     (0.9999999999999999, 0.61, [0.6099999999999999, 0.12403333333333333, 8.262279749260412e-17]),
+    (0.9999999891234567, 0.61, [0.6099999867306172, 0.12403333333333325, 8.094323328062216e-09]),
     (0.75, 1.0, [0.5625, 0.24609375, 0.24609375]),
     (0.1, 1.0, [0.010000000000000002, 0.0012333333333333335, 0.0099]),
     (0.37, 0.83, [0.11362699999999999, 0.033615373804333326, 0.081399314871]),
@@ -459,6 +463,47 @@ fn second_moments_tell_mistakes_of_equal_means_apart() {
         ("cosine drawn, weight cos θ", 0.5),
     ] {
         assert!(of(name).z(second).unwrap().abs() <= 7.5, "{name}");
+    }
+}
+
+/// The 95 % interval covers the truth in 94–96 % of 10,000 seeds, from the n on that is given with each light. Skewness γ costs
+/// 0.25 γ²/n of it (Edgeworth): 1,000 draws do for γ < 4, but under the ring of width 0.1 a cosine draw is ρ once in
+/// a hundred times (γ = 9.8) and needs 10,000, and under cos^(−½) θ it has no fourth moment (γ = 7.1) and gets 4,000. A constant
+/// light is left out for cosine: its interval is a single point.
+///
+/// The share's own std error is 0.22 %, so at the fixed seed the bounds hold for certain, and fresh seeds are given
+/// 0.6 % for skewness and 7.5 std errors (6.4e-14 each).
+#[test]
+fn intervals_cover_the_truth() {
+    let room = if std::env::var_os("UNBIASED_SEED").is_some() { 0.0224 } else { 0.01 };
+    let power = |a: f64| Box::new(CosinePower::new(a).unwrap()) as Box<dyn Light>;
+    let ring = |width: f64| Box::new(RingLight::new(width).unwrap()) as Box<dyn Light>;
+    let surface = Lambertian::new(0.61).unwrap();
+    for (name, light, draws_uniform, draws_cosine) in [
+        ("1", power(0.0), 1000, 0),
+        ("cos θ", power(1.0), 1000, 1000),
+        ("cos² θ", power(2.0), 1000, 1000),
+        ("cos^(−½) θ", power(-0.5), 1000, 4000),
+        ("ring 0.1", ring(0.1), 1000, 10_000),
+        ("ring 3/4", ring(0.75), 1000, 1000),
+    ] {
+        let incoming = |direction: &Direction| light.incoming(direction);
+        let uniform: Box<dyn Estimator> = Box::new(surface.uniform_estimator(incoming));
+        let cosine: Box<dyn Estimator> = Box::new(surface.cosine_estimator(incoming));
+        let truth = light.reflected(surface);
+        for (estimator, draws) in [(uniform, draws_uniform), (cosine, draws_cosine)] {
+            if draws == 0 {
+                continue;
+            }
+            let covers = |i: &u64| {
+                let run = estimate(&estimator, Budget::Draws(draws), common::seed(400_000 + i)).unwrap();
+                let [low, high] = run.confidence_interval(0.95).unwrap();
+                low <= truth && truth <= high
+            };
+            let share = (0..10_000u64).into_par_iter().filter(covers).count() as f64 / 10_000.0;
+            println!("{name}, n = {draws}: {share}");
+            assert!((share - 0.95).abs() <= room, "{name}, n = {draws}: {share}");
+        }
     }
 }
 

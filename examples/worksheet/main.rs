@@ -10,7 +10,38 @@ mod q1_1;
 mod q1_2;
 #[path = "../q1_3_axes.rs"]
 mod q1_3;
+#[path = "../q3_1_emission.rs"]
+mod q3_1;
+#[path = "../q3_2_uniform_sky.rs"]
+mod q3_2;
+#[path = "../q3_3_dependence.rs"]
+mod q3_3;
+#[path = "../q3_4_uniform_directions.rs"]
+mod q3_4;
+#[path = "../q3_5_cosine_directions.rs"]
+mod q3_5;
+#[path = "../q3_6_variance.rs"]
+mod q3_6;
+#[path = "../q5_1_bounces.rs"]
+mod q5_1;
+#[path = "../q5_2_few_bounces.rs"]
+mod q5_2;
+#[path = "../q5_3_more_bounces.rs"]
+mod q5_3;
 
 fn main() -> ExitCode {
-    workbook::worksheet(&[("1.1", q1_1::answer), ("1.2", q1_2::answer), ("1.3", q1_3::answer)])
+    workbook::worksheet(&[
+        ("1.1", q1_1::answer),
+        ("1.2", q1_2::answer),
+        ("1.3", q1_3::answer),
+        ("3.1", q3_1::answer),
+        ("3.2", q3_2::answer),
+        ("3.3", q3_3::answer),
+        ("3.4", q3_4::answer),
+        ("3.5", q3_5::answer),
+        ("3.6", q3_6::answer),
+        ("5.1", q5_1::answer),
+        ("5.2", q5_2::answer),
+        ("5.3", q5_3::answer),
+    ])
 }

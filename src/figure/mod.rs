@@ -5,10 +5,14 @@
 //! editions: [`Edition::Student`] has the same canvas and axes with nothing of the answer on it.
 
 mod inversion;
+mod lambertian;
 mod plot;
 mod render;
+mod roulette;
 
 pub use inversion::{empirical_cdf, exponential, tails};
+pub use lambertian::{directions, integrand, variance_against_exponent, variance_against_ring};
+pub use roulette::{bounces, mean_bounces, roulette_trade, truncation};
 
 use std::fmt::Write as _;
 use std::fs;

@@ -43,6 +43,8 @@ pub(crate) enum Ink {
 /// The shape of a measured point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Marker {
+    /// A small disc, for many points.
+    Dot,
     Disc,
     Ring,
     Square,

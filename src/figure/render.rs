@@ -257,6 +257,7 @@ fn draw_marker((x, y): (i32, i32), ink: Ink, marker: Marker, area: &Area<'_>) ->
     let radius = (2.2 * PT) as i32;
     let line = colour.stroke_width((0.9 * PT) as u32);
     match marker {
+        Marker::Dot => area.draw(&Circle::new((x, y), radius / 2, colour.filled())),
         Marker::Disc => area.draw(&Circle::new((x, y), radius, colour.filled())),
         Marker::Ring => area.draw(&Circle::new((x, y), radius, line)),
         Marker::Square => {

@@ -125,10 +125,10 @@ fn numbers(answers: &[&Answer]) -> Markup {
                             td { (answer.question()) }
                             td { (answer.what())
                                 @for (name, value) in answer.parameters() { ", " (name) " = " (value) } }
-                            td { @if let Some(truth) = answer.exact() { (shortened(truth)) } }
+                            td { @if let Some(truth) = answer.exact() { (print::shortened(truth)) } }
                             td {
                                 @if answer.estimate().is_some() { (print::interval(answer)) }
-                                @else if let Some(value) = answer.found() { (shortened(value)) }
+                                @else if let Some(value) = answer.found() { (print::shortened(value)) }
                             }
                             td { @if let Some(z) = answer.z() { (format!("{z:.2}").replace('-', "−")) }
                                 @match answer.agrees() { Some(true) => " ✓", Some(false) => " ✗", None => "" } }
@@ -145,20 +145,10 @@ fn numbers(answers: &[&Answer]) -> Markup {
 fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let thirds = digits.bytes().enumerate().map(|(i, digit)| {
-        let gap = if i > 0 && (digits.len() - i) % 3 == 0 { "\u{202f}" } else { "" };
+        let gap = if i > 0 && (digits.len() - i).is_multiple_of(3) { "\u{202f}" } else { "" };
         format!("{gap}{}", char::from(digit))
     });
     thirds.collect()
-}
-
-/// Ten significant digits at most, trailing zeros left out.
-fn shortened(value: f64) -> String {
-    let rounded = format!("{value:.9e}").parse().unwrap_or(value);
-    if rounded == 0.0 || (1e-6..1e12).contains(&f64::abs(rounded)) {
-        format!("{rounded}")
-    } else {
-        format!("{rounded:e}")
-    }
 }
 
 fn mathml(latex: &str) -> Result<String> {

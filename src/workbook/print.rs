@@ -104,7 +104,7 @@ fn solution(out: &mut impl Write, answer: &Answer) -> io::Result<()> {
     }
     writeln!(out)?;
     if let Some(truth) = answer.exact() {
-        writeln!(out, "        truth    {truth}")?;
+        writeln!(out, "        truth    {}", shortened(truth))?;
     }
     if let Some(estimate) = answer.estimate() {
         write!(out, "        estimate {} (95 %)", interval(answer))?;
@@ -124,7 +124,7 @@ fn solution(out: &mut impl Write, answer: &Answer) -> io::Result<()> {
         let seed = answer.seed().unwrap_or_default();
         writeln!(out, ", {:.3} s, seed {seed}", answer.seconds().unwrap_or_default())?;
     } else if let Some(value) = answer.found() {
-        writeln!(out, "        found    {value}")?;
+        writeln!(out, "        found    {}", shortened(value))?;
     }
     if let Some(note) = answer.sentence() {
         wrapped(out, note)?;
@@ -147,6 +147,16 @@ pub(super) fn interval(answer: &Answer) -> String {
             }
         }
         Err(_) => estimate.to_string(),
+    }
+}
+
+/// Twelve significant digits at most, trailing zeros left out.
+pub(super) fn shortened(value: f64) -> String {
+    let rounded = format!("{value:.11e}").parse().unwrap_or(value);
+    if rounded == 0.0 || (1e-6..1e12).contains(&f64::abs(rounded)) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
     }
 }
 

@@ -1,5 +1,103 @@
-//! The questions of section 5.
+//! The questions of section 5, Russian roulette.
 
-use super::Question;
+use super::{Parameter, Question, Wrong};
 
-pub(super) const QUESTIONS: &[Question] = &[];
+const ALBEDO: Parameter =
+    Parameter { name: "albedo", default: 0.8, help: "the albedo ρ of every vertex, in [0, 1)" };
+const VISIBILITY: Parameter = Parameter {
+    name: "visibility",
+    default: 0.5,
+    help: "the probability v that a vertex sees the light, in [0, 1]",
+};
+
+pub(super) const QUESTIONS: &[Question] = &[
+    Question {
+        id: "5.1",
+        title: "Bounces at p_rr = 4/5",
+        statement: "With Russian roulette a ray goes on with probability p_rr at every step, and X becomes X/p_rr if it does and 0 if not. Let \
+                    p_rr = 4/5, and N ≥ 0 the number of bounces. (i) What is P(N = 0)? (ii) What is P(N = 2)? (iii) What is E[N]?",
+        formula: "P(N = k) = p_rr^k (1 − p_rr): 1/5, 16/125; E[N] = p_rr/(1 − p_rr) = 4",
+        latex: &[
+            r"P(N = k) = p_{rr}^k\,(1 - p_{rr}), \qquad P(N=0) = \frac15, \qquad P(N=2) = \Big(\frac45\Big)^2\cdot\frac15 = \frac{16}{125}",
+            r"E[N] = \frac{1}{1 - p_{rr}} - 1 = \frac{p_{rr}}{1 - p_{rr}} = 4",
+        ],
+        answer: "N = k takes k times going on and one stop. N + 1 counts trials up to the first stop, which has probability 1 − p_rr, so its mean is \
+                 1/(1 − p_rr) = 5. The division by p_rr pays for the rays that stop: E[X_rr] = p_rr · E[X]/p_rr = E[X], if the coin is independent of X. The same law is \
+                 drawn in one step by inversion, N = ⌊ln(1 − U)/ln p_rr⌋.",
+        wrong: &[
+            Wrong { answer: "E[N] = 5", slip: "N + 1 counts the stop, N does not" },
+            Wrong { answer: "E[N] = 1/4", slip: "p_rr and 1 − p_rr swapped" },
+            Wrong { answer: "E[N] = 5/4", slip: "both" },
+            Wrong { answer: "P(N = 2) = 16/25", slip: "the stop forgotten: that is P(N ≥ 2)" },
+        ],
+        on_the_original: Some(
+            "“Geometric” counts trials there (mean 1/p), and failures in some libraries (mean 1/p − 1): look before using one.",
+        ),
+        example: "q5_1_bounces",
+        module: "roulette",
+        parameters: &[Parameter {
+            name: "p-rr",
+            default: 0.8,
+            help: "the continuation probability p_rr in (0, 1)",
+        }],
+    },
+    Question {
+        id: "5.2",
+        title: "Bounces at p_rr = 1/5",
+        statement: "With p_rr = 1/5, what is the expected number of bounces E[N]?",
+        formula: "E[N] = p_rr/(1 − p_rr) = 1/4",
+        latex: &[r"E[N] = \frac{1}{1-\frac15} - 1 = \frac54 - 1 = \frac14"],
+        answer: "Four rays of five stop at once. That is cheap, and it stays unbiased; but with an albedo of 0.8 every bounce that is taken weighs ρ/p_rr = 4 times more than the last \
+                 one, and for p_rr ≤ ρ² the variance is infinite. The mean of a thousand such paths is usually too dark, its error bar too short.",
+        wrong: &[
+            Wrong { answer: "5/4", slip: "the stop counted as a bounce" },
+            Wrong { answer: "4", slip: "p_rr and 1 − p_rr swapped" },
+            Wrong { answer: "1/5", slip: "P(N ≥ 1), the first term of E[N] alone" },
+        ],
+        on_the_original: None,
+        example: "q5_2_few_bounces",
+        module: "roulette",
+        parameters: &[
+            Parameter { name: "p-rr", default: 0.2, help: "the continuation probability p_rr in (0, 1)" },
+            ALBEDO,
+            VISIBILITY,
+        ],
+    },
+    Question {
+        id: "5.3",
+        title: "Bounces against p_rr",
+        statement: "How does a larger p_rr change the expected number of bounces E[N]?",
+        formula: "E[N] = p_rr/(1 − p_rr) grows with p_rr, without bound; Var N = p_rr/(1 − p_rr)²",
+        latex: &[
+            r"E[N] = \frac{p_{rr}}{1-p_{rr}}, \qquad \operatorname{Var} N = \frac{p_{rr}}{(1-p_{rr})^2}",
+            r"\operatorname{Var} = \frac{A(1-q)+Bq}{q-\rho^2}\ (q > \rho^2), \quad \text{cost} = \frac1{1-q}, \quad A = \frac{v^2\rho^2}{(1-\rho)^2},\ B = v(1-v)",
+        ],
+        answer: "It grows, slowly at first and without bound as p_rr → 1, and its standard deviation is larger than it everywhere. What that buys is seen where every vertex sees the \
+                 light with probability v and reflects ρ of it: a larger q lowers the variance and raises the cost, and their product is least at q*, between ρ and 1. Stopping after a fixed \
+                 number of bounces instead is biased: cheaper at first, overtaken by roulette later.",
+        wrong: &[
+            Wrong { answer: "it lowers E[N]", slip: "p_rr is the probability of going on, not of stopping" },
+            Wrong {
+                answer: "E[N] is proportional to p_rr",
+                slip: "only for small p_rr: from 0.8 to 0.9 it goes from 4 to 9",
+            },
+            Wrong {
+                answer: "it removes bias",
+                slip: "roulette is unbiased for every p_rr > 0; p_rr changes variance and cost",
+            },
+        ],
+        on_the_original: None,
+        example: "q5_3_more_bounces",
+        module: "roulette",
+        parameters: &[
+            Parameter {
+                name: "p-rr",
+                default: 0.8,
+                help: "the continuation probability q of the paths, in (0, 1)",
+            },
+            ALBEDO,
+            VISIBILITY,
+            Parameter { name: "max-k", default: 8.0, help: "the last vertex of truncated paths" },
+        ],
+    },
+];

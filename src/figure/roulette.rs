@@ -1,0 +1,242 @@
+//! Figures of section 5.
+
+use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
+use super::{Edition, Figure};
+use crate::error::Result;
+use crate::roulette::{LightModel, Roulette};
+use crate::run::{Budget, Estimator, estimate};
+use crate::stream::Stream;
+
+/// 5.1: P(N = k) for two continuation probabilities, exact as bars and measured as points with their 95 % intervals.
+///
+/// # Errors
+/// If a continuation probability is not in (0, 1).
+pub fn bounces(p_rr: [f64; 2], draws: usize, seed: u64) -> Result<Figure> {
+    let mut panels = Vec::new();
+    for p in p_rr {
+        let roulette = Roulette::new(p)?;
+        // up to the bounce that 99 of 100 rays do not reach
+        let last = roulette.quantile(0.99)?.clamp(5, 60);
+        let tallest = (1.0 - p).max(0.05);
+        let mut counts = vec![0u32; last as usize + 1];
+        let (mut rng, sampler) = (Stream::new(seed, 0), roulette.bounces_by_simulation()?);
+        for _ in 0..draws {
+            if let Some(count) = counts.get_mut(sampler.draw(&mut rng) as usize) {
+                *count += 1;
+            }
+        }
+        let n = draws as f64;
+        let measured = (0..=last).zip(counts).map(|(k, count)| {
+            let share = f64::from(count) / n;
+            let reach = 1.96 * (share * (1.0 - share) / n).sqrt();
+            [k as f64, share, share - reach, share + reach]
+        });
+        let every = (last / 6).max(1) as usize;
+        let ticks = (0..=last).step_by(every).map(|k| (k as f64, k.to_string()));
+        let mut panel = Panel::new(
+            &format!("p_rr = {p}"),
+            Axis::linear("number of bounces k", -0.7, last as f64 + 0.7).with_ticks(ticks),
+            Axis::linear("P(N = k)", 0.0, 1.15 * tallest),
+        );
+        let mean = roulette.mean();
+        panel
+            .bars("exact", Ink::Blue, 0.8, (0..=last).map(|k| [k as f64, roulette.pmf(k)]))
+            .error_bars("measured", Ink::Black, Marker::Disc, measured)
+            .text(Ink::Blue, [last as f64, 1.02 * tallest], Side::Left, "bars: pᵏ(1 − p)")
+            .text(
+                Ink::Black,
+                [last as f64, 0.9 * tallest],
+                Side::Left,
+                &format!("points: {draws} rays, 95 %"),
+            )
+            .text(
+                Ink::Black,
+                [last as f64, 0.78 * tallest],
+                Side::Left,
+                &format!("E[N] = {}", (1e6 * mean).round() / 1e6),
+            );
+        panels.push(panel);
+    }
+    let [a, b] = p_rr;
+    Plot {
+        name: "5_1_bounces",
+        title: format!("The number of bounces at p_rr = {a} and {b}"),
+        description: format!(
+            "Two bar charts of P(N = k) = pᵏ(1 − p), for p = {a} and p = {b}, falling geometrically; points with 95 % intervals are the shares of {draws} simulated rays (seed {seed})."
+        ),
+        edition: Edition::Solution,
+        width: Width::Page,
+        height_mm: 62.0,
+        columns: 2,
+        panels,
+    }
+    .draw()
+}
+
+/// 5.3: E\[N\] and its standard deviation against p_rr.
+///
+/// # Errors
+/// If it cannot be drawn.
+pub fn mean_bounces(draws: u64, seed: u64) -> Result<Figure> {
+    let of = |p: f64| Roulette::new(p).map(|roulette| (roulette.mean(), roulette.variance().sqrt()));
+    let mut measured = Vec::new();
+    for p in [0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9] {
+        let found = estimate(&Roulette::new(p)?.bounces_by_inversion()?, Budget::Draws(draws), seed)?;
+        measured.push([p, found.mean()]);
+    }
+    let curve = (1..=480).map(|i| 0.96 * f64::from(i) / 480.0);
+    let band = curve.filter_map(|p| {
+        of(p).ok().map(|(mean, deviation)| [p, (mean - deviation).max(0.0), mean + deviation])
+    });
+    let mut panel = Panel::new(
+        "E[N] ± one standard deviation",
+        Axis::linear("continuation probability p_rr", 0.0, 1.0),
+        Axis::linear("number of bounces", 0.0, 20.0),
+    );
+    panel
+        .band("± standard deviation", Ink::Blue, band)
+        .curve_between("E[N]", Ink::Blue, 0.001, 0.96, |p| of(p).map_or(f64::NAN, |(mean, _)| mean))
+        .marks("measured", Ink::Black, Marker::Disc, measured)
+        .text(Ink::Blue, [0.03, 18.0], Side::Right, "E[N] = p/(1 − p)")
+        .text(Ink::Blue, [0.03, 15.8], Side::Right, "band: ±√p/(1 − p)")
+        .text(Ink::Black, [0.2, 2.2], Side::Above, "1/5: ¼")
+        .text(Ink::Black, [0.79, 4.6], Side::Left, "4/5: 4");
+    Plot {
+        name: "5_3_mean_bounces",
+        title: "E[N] grows with p_rr, without bound".into(),
+        description: format!(
+            "E[N] = p/(1 − p) against p, rising from 0 slowly and then steeply towards p = 1, in a band of one standard deviation √p/(1 − p) to both sides. Points: means of {draws} draws (seed {seed})."
+        ),
+        edition: Edition::Solution,
+        width: Width::Column,
+        height_mm: 62.0,
+        columns: 1,
+        panels: vec![panel],
+    }
+    .draw()
+}
+
+/// 5.3: variance, cost and their product against the continuation probability q, with q ≤ ρ² shaded, where the variance is infinite.
+///
+/// # Errors
+/// If it cannot be drawn.
+pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
+    let (albedo, best) = (model.albedo(), model.optimum());
+    let edge = albedo * albedo;
+    let paths = |q: f64| model.roulette(q);
+    let variance = |q: f64| paths(q).map_or(f64::NAN, |paths| paths.variance());
+    let cost = |q: f64| paths(q).map_or(f64::NAN, |paths| paths.cost());
+    let product = |q: f64| variance(q) * cost(q);
+    let low = (edge - 0.25).max(0.0);
+    let mut panel = Panel::new(
+        &format!("ρ = {albedo}, v = {}", model.visibility()),
+        Axis::linear("continuation probability q", low, 1.0),
+        Axis::log("variance, cost, product", 0.5, 500.0),
+    );
+    panel.shade(low, edge);
+    panel
+        .curve_between("variance", Ink::Blue, edge + 1e-6, 0.9995, variance)
+        .curve_between("cost", Ink::Vermilion, low, 0.9995, cost)
+        .curve_between("variance × cost", Ink::Green, edge + 1e-6, 0.9995, product)
+        .text(Ink::Black, [0.5 * (low + edge), 150.0], Side::Centre, "q ≤ ρ²:")
+        .text(Ink::Black, [0.5 * (low + edge), 80.0], Side::Centre, "infinite")
+        .text(Ink::Black, [0.5 * (low + edge), 43.0], Side::Centre, "variance")
+        .text(Ink::Vermilion, [low + 0.02, 2.0 * cost(low + 0.1)], Side::Right, "cost 1/(1 − q)")
+        .text(Ink::Blue, [0.93, 0.55 * variance(0.93)], Side::Left, "variance")
+        .text(Ink::Green, [edge + 0.06, 300.0], Side::Right, "variance × cost");
+    let mut marked = vec![(q, "● q", Marker::Disc, 1.05)];
+    if best > 0.0 && best < 1.0 {
+        marked.push((best, "○ q*", Marker::Ring, 0.7));
+    }
+    for (at, word, marker, row) in marked {
+        if product(at).is_finite() {
+            panel.marks(word, Ink::Black, marker, [[at, product(at)]]);
+            let label = format!("{word} = {}: {:.2}", (1000.0 * at).round() / 1000.0, product(at));
+            panel.text(Ink::Black, [low + 0.005, row], Side::Right, &label);
+        }
+    }
+    Plot {
+        name: "5_3_roulette_trade",
+        title: format!("What roulette costs and buys: the product is least at q* = {best:.3}"),
+        description: format!(
+            "Variance, cost 1/(1 − q) and their product against q, logarithmic, for ρ = {albedo} and v = {}. The variance is infinite up to q = ρ² = {edge:.4}, shaded, and falls; the cost rises; the \
+             product is least at q* = {best:.4}. Marked: q = {q} and q*.",
+            model.visibility()
+        ),
+        edition: Edition::Solution,
+        width: Width::Column,
+        height_mm: 68.0,
+        columns: 1,
+        panels: vec![panel],
+    }
+    .draw()
+}
+
+/// 5.3: the root mean square error against the number of vertices, of roulette and of paths truncated after k ≤ 8 and k ≤ 16.
+///
+/// # Errors
+/// If q is not in (0, 1).
+pub fn truncation(model: &LightModel, q: f64, replicates: u64, seed: u64) -> Result<Figure> {
+    let roulette = model.roulette(q)?;
+    let root = |square: Result<f64>| square.map_or(f64::NAN, f64::sqrt);
+    let mut panel = Panel::new(
+        &format!("ρ = {}, v = {}, q = {q}", model.albedo(), model.visibility()),
+        Axis::log("vertices C", 10.0, 1e5),
+        Axis::log("RMSE", 0.01, 3.0).with_ticks([(0.01, "0.01"), (0.1, "0.1"), (1.0, "1")]),
+    );
+    panel.curve("roulette", Ink::Blue, |c| root(roulette.mean_square_error(c)));
+    panel.text(Ink::Blue, [60.0, 1.7 * root(roulette.mean_square_error(60.0))], Side::Right, "roulette");
+    for (max_k, ink) in [(8, Ink::Vermilion), (16, Ink::Green)] {
+        let truncated = model.truncated(max_k)?;
+        panel.curve(&format!("k ≤ {max_k}"), ink, |c| root(truncated.mean_square_error(c)));
+        let plateau = truncated.bias().abs();
+        let (at, side) =
+            if max_k == 8 { ([9e4, 1.22 * plateau], Side::Left) } else { ([11.0, plateau], Side::Right) };
+        panel.text(ink, at, side, &format!("k ≤ {max_k}: bias {plateau:.3}"));
+        let crossing = model.crossing(q, max_k)?;
+        if (10.0..1e5).contains(&crossing) {
+            let at = [crossing, root(roulette.mean_square_error(crossing))];
+            panel.marks("crossing", Ink::Black, Marker::Ring, [at]);
+            panel.text(
+                Ink::Black,
+                [1.2 * crossing, 1.45 * at[1]],
+                Side::Right,
+                &format!("C = {crossing:.0}"),
+            );
+        }
+    }
+    // each point: the RMSE of `replicates` means of as many paths as take about C vertices
+    for (ink, marker, estimator, cost) in [
+        (Ink::Blue, Marker::Disc, Box::new(roulette) as Box<dyn Estimator>, roulette.cost()),
+        (Ink::Vermilion, Marker::Square, Box::new(model.truncated(8)?), 9.0),
+    ] {
+        let mut points = Vec::new();
+        for paths in
+            [4u64, 40, 400, 4000].map(|paths| (f64::from(paths as u32) * 5.0 / cost).round().max(1.0) as u64)
+        {
+            let mut square = 0.0;
+            for replicate in 0..replicates {
+                let found = estimate(&estimator, Budget::Draws(paths), seed.wrapping_add(replicate))?;
+                square += (found.mean() - model.mean()).powi(2) / replicates as f64;
+            }
+            points.push([paths as f64 * cost, square.sqrt()]);
+        }
+        panel.marks("measured", ink, marker, points);
+    }
+    Plot {
+        name: "5_3_truncation",
+        title: "Truncated paths stop improving; roulette overtakes them".into(),
+        description: format!(
+            "Root mean square error against the number of vertices C, both logarithmic, for ρ = {}, v = {}. Roulette with q = {q} falls as 1/√C. Paths cut after k ≤ 8 and k ≤ 16 level off at \
+             their bias; the crossings are marked. Points: {replicates} runs each, seeds from {seed}.",
+            model.albedo(),
+            model.visibility()
+        ),
+        edition: Edition::Solution,
+        width: Width::Column,
+        height_mm: 68.0,
+        columns: 1,
+        panels: vec![panel],
+    }
+    .draw()
+}
