@@ -44,6 +44,26 @@ pub enum Error {
         /// The value it had.
         value: f64,
     },
+    /// A draw left the range that was claimed for it.
+    #[error("draw {draw} of block {block} is {value} (seed {seed}), outside the range [{}, {}] claimed for it", .range[0], .range[1])]
+    OutOfRange {
+        /// The check's seed.
+        seed: u64,
+        /// The block of draws, counted from 0.
+        block: u64,
+        /// The draw within its block, counted from 0.
+        draw: u64,
+        /// The value it had.
+        value: f64,
+        /// The range claimed.
+        range: [f64; 2],
+    },
+    /// An estimator is no function of a few uniform numbers.
+    #[error("the estimator cannot be integrated: {reason}")]
+    NotIntegrable {
+        /// Where it fails.
+        reason: String,
+    },
     /// Too few draws for the statistic asked for.
     #[error("{statistic} needs at least {needed} draws, not {draws}")]
     TooFewDraws {

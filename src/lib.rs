@@ -48,6 +48,7 @@
 //! - `workbook` (default): figures as SVG and CSV, the examples' command line, the page.
 //! - `png`, `pdf`: figures in those formats, too.
 
+pub mod check;
 pub mod density;
 pub mod error;
 pub mod estimate;

@@ -376,18 +376,33 @@ fn one_block(
     block: u64,
     draws: u64,
 ) -> Result<(Estimate, Cost)> {
-    let mut rng = Stream::new(seed, block);
     let mut estimate = Estimate::new();
+    let cost = walk_block(estimator, seed, block, draws, |slice| {
+        estimate.extend_from_slice(slice);
+        Ok(())
+    })?;
+    Ok((estimate, cost))
+}
+
+/// Takes the first `draws` draws of a block, at most [`SLICE`] at a time, and sees that they are finite.
+pub(crate) fn walk_block(
+    estimator: &(impl Estimator + ?Sized),
+    seed: u64,
+    block: u64,
+    draws: u64,
+    mut take: impl FnMut(&[f64]) -> Result<()>,
+) -> Result<Cost> {
+    let mut rng = Stream::new(seed, block);
     let mut buffer = [0.0; SLICE];
-    while estimate.draws() < draws {
-        let slice = &mut buffer[..(draws - estimate.draws()).min(SLICE as u64) as usize];
+    let mut done = 0;
+    while done < draws {
+        let slice = &mut buffer[..(draws - done).min(SLICE as u64) as usize];
         estimator.fill(&mut rng, slice);
         if let Some(draw) = slice.iter().position(|draw| !draw.is_finite()) {
-            let value = slice[draw];
-            return Err(Error::Draw { seed, block, draw: estimate.draws() + draw as u64, value });
+            return Err(Error::Draw { seed, block, draw: done + draw as u64, value: slice[draw] });
         }
-        estimate.extend_from_slice(slice);
+        take(slice)?;
+        done += slice.len() as u64;
     }
-    let cost = Cost { random_numbers: rng.random_numbers(), evaluations: rng.evaluations() };
-    Ok((estimate, cost))
+    Ok(Cost { random_numbers: rng.random_numbers(), evaluations: rng.evaluations() })
 }

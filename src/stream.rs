@@ -25,9 +25,17 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Stream {
-    rng: Xoshiro256PlusPlus,
+    source: Source,
     random_numbers: u64,
     evaluations: u64,
+}
+
+/// What a stream's numbers come from.
+#[derive(Debug, Clone)]
+enum Source {
+    Generator(Xoshiro256PlusPlus),
+    /// These words one after the other, then 0 for ever.
+    Script(Vec<u64>),
 }
 
 impl Stream {
@@ -39,7 +47,23 @@ impl Stream {
             let mixed = mix(seed.wrapping_add(salt)).wrapping_add(mix(block ^ !salt));
             *bytes = mix(mixed).to_le_bytes();
         }
-        Self { rng: Xoshiro256PlusPlus::from_seed(state), random_numbers: 0, evaluations: 0 }
+        let source = Source::Generator(Xoshiro256PlusPlus::from_seed(state));
+        Self { source, random_numbers: 0, evaluations: 0 }
+    }
+
+    /// A stream that gives these uniform numbers, each rounded down to the grid of 2⁻⁵³ and kept in [0, 1), and then 0 for ever: it makes of an estimator a
+    /// function on the unit cube.
+    ///
+    /// ```
+    /// let mut rng = unbiased::Stream::scripted(&[0.25, 0.75]);
+    /// assert_eq!([rng.uniform(), rng.uniform(), rng.uniform()], [0.25, 0.75, 0.0]);
+    /// ```
+    pub fn scripted(uniforms: &[f64]) -> Self {
+        const GRID: f64 = (1u64 << 53) as f64;
+        // a float-to-int cast saturates, and takes NaN to 0
+        let word = |u: &f64| ((u * GRID) as u64).min((1 << 53) - 1) << 11;
+        let source = Source::Script(uniforms.iter().map(word).collect());
+        Self { source, random_numbers: 0, evaluations: 0 }
     }
 
     /// A uniform number on the grid k·2⁻⁵³ in [0, 1): never 1, and 0 with probability 2⁻⁵³.
@@ -86,13 +110,20 @@ impl TryRng for Stream {
 
     #[inline]
     fn try_next_u64(&mut self) -> Result<u64, Infallible> {
-        self.random_numbers = self.random_numbers.wrapping_add(1);
-        self.rng.try_next_u64()
+        let index = self.random_numbers;
+        self.random_numbers = index.wrapping_add(1);
+        match &mut self.source {
+            Source::Generator(rng) => rng.try_next_u64(),
+            Source::Script(words) => Ok(words.get(index as usize).copied().unwrap_or(0)),
+        }
     }
 
     fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
-        self.random_numbers = self.random_numbers.wrapping_add(bytes.len().div_ceil(8) as u64);
-        self.rng.try_fill_bytes(bytes)
+        for chunk in bytes.chunks_mut(8) {
+            let Ok(word) = self.try_next_u64();
+            chunk.copy_from_slice(&word.to_le_bytes()[..chunk.len()]);
+        }
+        Ok(())
     }
 }
 

@@ -1,0 +1,210 @@
+//! Is a sampler distributed as claimed? Bands that hold at every number of draws.
+
+use std::f64::consts::TAU;
+use std::fmt;
+
+use rand::distr::Distribution;
+
+use crate::error::{Result, require};
+use crate::hemisphere::{Direction, Hemisphere};
+use crate::run::Estimator;
+use crate::stream::Stream;
+
+/// What a comparison of draws with their claimed distribution found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Agreement {
+    /// Whether the draws could be from the distribution claimed. `false` is wrong with probability at most α; `true` proves nothing that
+    /// `unseen` names.
+    pub agrees: bool,
+    /// The largest statistic found, as a share of the one allowed: above 1 it does not agree.
+    pub strain: f64,
+    /// What was compared where the strain is largest.
+    pub place: Place,
+    /// Draws taken.
+    pub draws: usize,
+    /// The probability of calling a right sampler wrong.
+    pub alpha: f64,
+    /// What this check cannot see.
+    pub unseen: &'static str,
+}
+
+/// Where draws and claim differ most.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Place {
+    /// The empirical cdf at this value.
+    Value(f64),
+    /// The empirical cdf of cos θ at this value.
+    CosTheta(f64),
+    /// The empirical cdf of φ/2π at this value.
+    Azimuth(f64),
+    /// The share of directions in this cell of cos θ and φ/2π, each cut into [`CELLS`] equally probable parts, counted from 0.
+    Cell(usize, usize),
+}
+
+/// Parts into which [`directions`] cuts cos θ and φ each.
+pub const CELLS: usize = 8;
+
+/// Compares a sampler's draws (what the estimator draws) with the cdf claimed for them.
+///
+/// The empirical cdf of n draws stays within √(ln(2/α)/2n) of the true one, everywhere at once, with probability at least 1 − α,
+/// whatever n and whatever the distribution, discrete ones included (Dvoretzky, Kiefer & Wolfowitz 1956; Massart 1990). The number of draws is taken so
+/// that a deviation of `deviation` in the cdf is seen with probability 1 − 1e-6: n = (√(ln(2/α)/2) + √(ln(1e6)/2))²/D², 41 / D² at α = 1e-12.
+///
+/// # Errors
+/// If the deviation is not in (0, 1], α not in (0, 1), a draw is NaN, or the claimed cdf leaves \[0, 1\].
+///
+/// ```
+/// use unbiased::{check, inversion::Exponential};
+///
+/// let exponential = Exponential::new(0.37)?;
+/// assert!(check::distributed_as(&exponential, |x| exponential.cdf(x), 0.01, 1e-12, 1)?.agrees);
+/// let claimed = Exponential::new(0.4)?;
+/// assert!(!check::distributed_as(&exponential, |x| claimed.cdf(x), 0.01, 1e-12, 1)?.agrees);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+pub fn distributed_as(
+    sampler: &(impl Estimator + ?Sized),
+    cdf: impl Fn(f64) -> f64,
+    deviation: f64,
+    alpha: f64,
+    seed: u64,
+) -> Result<Agreement> {
+    let draws = enough(deviation, alpha)?;
+    let mut rng = Stream::new(seed, 0);
+    let mut samples = vec![0.0; draws];
+    sampler.fill(&mut rng, &mut samples);
+    let (found, at) = largest_deviation(&mut samples, cdf)?;
+    Ok(Agreement {
+        agrees: found <= band(draws, alpha),
+        strain: found / band(draws, alpha),
+        place: Place::Value(at),
+        draws,
+        alpha,
+        unseen: "a deviation of the cdf smaller than asked for, dependence between draws",
+    })
+}
+
+/// Compares drawn directions with the density claimed for them: cos θ and φ/2π by the band of [`distributed_as`], and both together over 8 × 8 equally
+/// probable cells.
+///
+/// A cell of probability p in which a share p̂ of n directions fell is refused where n·kl(p̂‖p) > ln(2k/α), k the number of cells, kl the relative
+/// entropy of two coins: Chernoff's bound, exact for every n and p, where Pearson's χ² at such levels is not. Each of the three parts has α/3.
+///
+/// # Errors
+/// If the deviation is not in (0, 1], or α not in (0, 1).
+///
+/// ```
+/// use unbiased::{check, hemisphere::Hemisphere};
+///
+/// assert!(check::directions(&Hemisphere::Cosine, Hemisphere::Cosine, 0.01, 1e-12, 1)?.agrees);
+/// assert!(!check::directions(&Hemisphere::Uniform, Hemisphere::Cosine, 0.01, 1e-12, 1)?.agrees);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+pub fn directions(
+    sampler: &impl Distribution<Direction>,
+    claimed: Hemisphere,
+    deviation: f64,
+    alpha: f64,
+    seed: u64,
+) -> Result<Agreement> {
+    let part = alpha / 3.0;
+    let draws = enough(deviation, part)?;
+    let mut rng = Stream::new(seed, 0);
+    let (mut cosines, mut azimuths) = (Vec::with_capacity(draws), Vec::with_capacity(draws));
+    let mut counts = [[0u64; CELLS]; CELLS];
+    for _ in 0..draws {
+        let direction = sampler.sample(&mut rng);
+        let (cos_theta, azimuth) = (direction.cos_theta(), direction.phi() / TAU);
+        let cell = |probability: f64| ((probability * CELLS as f64) as usize).min(CELLS - 1);
+        counts[cell(claimed.cdf_of_cos_theta(cos_theta))][cell(azimuth)] += 1;
+        cosines.push(cos_theta);
+        azimuths.push(azimuth);
+    }
+    let (of_cosine, cosine) = largest_deviation(&mut cosines, |c| claimed.cdf_of_cos_theta(c))?;
+    let (of_azimuth, azimuth) = largest_deviation(&mut azimuths, |share| share.clamp(0.0, 1.0))?;
+    let mut strains = vec![
+        (of_cosine / band(draws, part), Place::CosTheta(cosine)),
+        (of_azimuth / band(draws, part), Place::Azimuth(azimuth)),
+    ];
+    let cells = (CELLS * CELLS) as f64;
+    for (row, counts) in counts.iter().enumerate() {
+        for (column, count) in counts.iter().enumerate() {
+            let entropy = draws as f64 * coin_entropy(*count as f64 / draws as f64, 1.0 / cells);
+            strains.push((entropy / (2.0 * cells / part).ln(), Place::Cell(row, column)));
+        }
+    }
+    let (strain, place) =
+        strains.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, Place::CosTheta(0.0)));
+    Ok(Agreement {
+        agrees: strain <= 1.0,
+        strain,
+        place,
+        draws,
+        alpha,
+        unseen: "structure finer than a cell that leaves cos θ and φ as they should be, dependence between directions",
+    })
+}
+
+/// Draws with which a deviation D shows with probability 1 − 1e-6.
+fn enough(deviation: f64, alpha: f64) -> Result<usize> {
+    require("the deviation to be seen", deviation, deviation > 0.0 && deviation <= 1.0, "in (0, 1]")?;
+    require("the false-alarm probability α", alpha, alpha > 0.0 && alpha < 1.0, "strictly between 0 and 1")?;
+    let reach = (0.5 * (2.0 / alpha).ln()).sqrt() + (0.5 * 1e6f64.ln()).sqrt();
+    let draws = (reach / deviation).powi(2).ceil();
+    Ok(require("the number of draws it takes", draws, draws <= 1e9, "at most 1e9")? as usize)
+}
+
+/// The half-width of the band.
+fn band(draws: usize, alpha: f64) -> f64 {
+    ((2.0 / alpha).ln() / (2.0 * draws as f64)).sqrt()
+}
+
+/// sup |Fₙ − F| and where it is. Ties are taken together, and F just below a value stands for its left limit, so that laws with jumps are compared
+/// at both sides of each.
+fn largest_deviation(samples: &mut [f64], cdf: impl Fn(f64) -> f64) -> Result<(f64, f64)> {
+    samples.sort_unstable_by(f64::total_cmp);
+    let n = samples.len() as f64;
+    let probability = |x: f64| {
+        let f = cdf(x);
+        require("the claimed cdf", f, (0.0..=1.0).contains(&f), "in [0, 1]")
+    };
+    let mut worst = (0.0, f64::NAN);
+    let mut below = 0;
+    for ties in samples.chunk_by(|a, b| a.total_cmp(b).is_eq()) {
+        let [x, ..] = *ties else { continue };
+        require("a draw", x, !x.is_nan(), "a number")?;
+        let up_to = below + ties.len();
+        let left = (below as f64 / n - probability(x.next_down())?).abs();
+        let right = (up_to as f64 / n - probability(x)?).abs();
+        let here = left.max(right);
+        if here > worst.0 {
+            worst = (here, x);
+        }
+        below = up_to;
+    }
+    Ok(worst)
+}
+
+/// kl(a‖b) of coins with probabilities a and b.
+fn coin_entropy(a: f64, b: f64) -> f64 {
+    let term = |a: f64, b: f64| if a == 0.0 { 0.0 } else { a * (a / b).ln() };
+    term(a, b) + term(1.0 - a, 1.0 - b)
+}
+
+/// The finding in a sentence.
+impl fmt::Display for Agreement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let verdict = if self.agrees { "as claimed" } else { "not as claimed" };
+        let place = match self.place {
+            Place::Value(x) => format!("the cdf at {x:.6}"),
+            Place::CosTheta(c) => format!("the cdf of cos θ at {c:.6}"),
+            Place::Azimuth(share) => format!("the cdf of φ/2π at {share:.6}"),
+            Place::Cell(row, column) => format!("the cell ({row}, {column}) of cos θ and φ"),
+        };
+        write!(
+            f,
+            "distributed {verdict}: the largest difference, in {place}, is {:.2} of the one allowed (α = {:.0e}, {} draws); not seen: {}",
+            self.strain, self.alpha, self.draws, self.unseen
+        )
+    }
+}

@@ -1,0 +1,351 @@
+//! The checks themselves: right estimators pass, wrong ones are refuted, at the rates that are claimed.
+
+mod common;
+
+use rand::distr::Distribution;
+use unbiased::check::{self, Unbiased, Verdict, distributed_as, exactly};
+use unbiased::hemisphere::{Direction, Hemisphere};
+use unbiased::inversion::Exponential;
+use unbiased::lambertian::Lambertian;
+use unbiased::rectangle::Rectangle;
+use unbiased::roulette::Roulette;
+use unbiased::{Error, Estimator, Stream, from_fn, ratio};
+
+/// A right estimator of each section, its truth and the range of its draws, times 1 + `bias`.
+fn right(section: usize, bias: f64) -> (Box<dyn Estimator>, f64, [f64; 2]) {
+    let times = 1.0 + bias;
+    match section {
+        // F(X) of an exponential X is uniform: a bounded function with a known mean
+        1 => {
+            let exponential = Exponential::new(0.37).unwrap();
+            let f = from_fn(move |rng| times * exponential.cdf(exponential.draw(rng)));
+            (Box::new(f), 0.5, [0.0, 1.01])
+        }
+        2 => {
+            let rectangle = Rectangle::new([-2.0, 2.0], [-2.0, 2.0]).unwrap();
+            let f = ratio(move |[x, y]: &[f64; 2]| times * (x * x + y * y), rectangle);
+            (Box::new(f), 128.0 / 3.0, [0.0, 130.0])
+        }
+        3 => {
+            let cube = Lambertian::new(0.61).unwrap();
+            (Box::new(cube.uniform_estimator(move |w| times * w.cos_theta())), 0.61 * 2.0 / 3.0, [0.0, 1.25])
+        }
+        _ => {
+            let roulette = Roulette::new(0.83).unwrap();
+            let x = from_fn(move |rng| times * 3.0 * rng.uniform().powi(2));
+            (Box::new(roulette.wrap(x)), 1.0, [0.0, 3.7])
+        }
+    }
+}
+
+const SECTIONS: [usize; 4] = [1, 2, 3, 5];
+
+fn check_of(section: usize, delta: f64) -> Unbiased {
+    let (_, truth, range) = right(section, 0.0);
+    Unbiased::new(truth, range).unwrap().within(delta).unwrap()
+}
+
+/// 1,000 seeds an estimator at α = 0.05: the exact rate is below 0.02 (see the module's own test), so more than 0.05 has a probability below 1e-9.
+/// Every right estimator is certified, but for those called biased. (At δ = 1e-2, sixteen times the draws: 24, 12, 15 and 30 of 1000.)
+#[test]
+fn at_most_five_in_a_hundred_right_estimators_are_called_biased_at_alpha_005() {
+    for section in SECTIONS {
+        let (estimator, ..) = right(section, 0.0);
+        let check = check_of(section, 4e-2).alpha(0.05).unwrap();
+        let mut counts = [0u32; 3];
+        for seed in 0..1000 {
+            let report = check.seed(common::seed(1000 + seed)).run(&estimator).unwrap();
+            counts[match report.verdict {
+                Verdict::Biased => 0,
+                Verdict::Unbiased => 1,
+                Verdict::Undecided => 2,
+            }] += 1;
+        }
+        println!("section {section}: {} of 1000 called biased, {} undecided", counts[0], counts[2]);
+        assert!(counts[0] <= 50 && counts[2] == 0, "section {section}: {counts:?}");
+    }
+}
+
+/// At its own α the check calls no right estimator biased, and certifies it within a thousandth.
+#[test]
+fn right_estimators_are_certified_within_a_thousandth() {
+    for section in SECTIONS {
+        let (estimator, ..) = right(section, 0.0);
+        let report = check_of(section, 1e-3).seed(common::seed(30)).run(&estimator).unwrap();
+        println!("section {section}: {report}");
+        assert_eq!(report.verdict, Verdict::Unbiased, "section {section}: {report}");
+    }
+}
+
+/// A bias of one part in a thousand, planted in an estimator of each section, is refuted: β = 1e-6 bounds the chance that it is certified first.
+#[test]
+fn planted_biases_of_a_thousandth_are_refuted() {
+    for section in SECTIONS {
+        for (i, bias) in [1e-3, -1e-3].into_iter().enumerate() {
+            // the tolerance is half the bias: within it would be right to certify
+            let (estimator, ..) = right(section, bias);
+            let report = check_of(section, 5e-4).seed(common::seed(40 + i as u64)).run(&estimator).unwrap();
+            println!("section {section}, bias {bias}: {} draws", report.estimate.draws());
+            assert_eq!(report.verdict, Verdict::Biased, "section {section}, {bias}: {report}");
+        }
+    }
+}
+
+/// Large biases are refuted in a few hundred draws.
+#[test]
+fn a_factor_of_two_takes_a_few_hundred_draws() {
+    for section in SECTIONS {
+        let (estimator, truth, [low, high]) = right(section, 1.0);
+        let report =
+            Unbiased::new(truth, [low, 2.0 * high]).unwrap().seed(common::seed(50)).run(&estimator).unwrap();
+        assert_eq!(report.verdict, Verdict::Biased);
+        assert!(report.estimate.draws() <= 2048, "section {section}: {report}");
+        let (ratio, error) = report.ratio();
+        assert!((ratio - 2.0).abs() <= 7.0 * error);
+    }
+}
+
+#[test]
+fn the_number_of_threads_cannot_be_seen() {
+    for section in SECTIONS {
+        let (estimator, ..) = right(section, 0.0);
+        let check = check_of(section, 3e-3).seed(common::seed(60));
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| check.run(&estimator).unwrap())
+        };
+        let one = on(1);
+        for threads in [2, 3, 8] {
+            assert_eq!(on(threads), one);
+        }
+    }
+}
+
+/// Means of jittered sweeps are unbiased draws all the same, of far smaller variance: the same certificate for a fraction of the evaluations.
+#[test]
+fn jittered_sweeps_are_certified_with_fewer_evaluations() {
+    let rectangle = Rectangle::new([-2.0, 2.0], [-2.0, 2.0]).unwrap();
+    let f = |x: f64, y: f64| (-x * x - y * y).exp();
+    let erf2 = 0.995_322_265_018_952_7_f64;
+    let truth = std::f64::consts::PI * erf2 * erf2;
+    let check = Unbiased::new(truth, [0.0, 16.0]).unwrap().seed(common::seed(70));
+    let plain = check.run(&ratio(move |[x, y]: &[f64; 2]| f(*x, *y), rectangle)).unwrap();
+    let swept = check.run(&rectangle.jittered(f, 4).unwrap()).unwrap();
+    assert_eq!((plain.verdict, swept.verdict), (Verdict::Unbiased, Verdict::Unbiased));
+    let (plain, swept) = (plain.estimate.draws(), 16 * swept.estimate.draws());
+    println!("{plain} evaluations as pairs, {swept} as sweeps of 16");
+    assert!(2 * swept < plain);
+}
+
+#[test]
+fn signed_draws_and_a_truth_of_zero_work_with_an_absolute_tolerance() {
+    let signed = |shift: f64| from_fn(move |rng| 2.0 * rng.uniform() - 1.0 + shift);
+    let check = Unbiased::new(0.0, [-1.1, 1.1]).unwrap();
+    assert!(check.within(1e-3).is_err(), "nothing is relative to 0");
+    let check = check.within_absolute(2e-3).unwrap().seed(common::seed(80));
+    assert_eq!(check.run(&signed(0.0)).unwrap().verdict, Verdict::Unbiased);
+    assert_eq!(check.run(&signed(4e-3)).unwrap().verdict, Verdict::Biased);
+    assert_eq!(check.run(&signed(-4e-3)).unwrap().verdict, Verdict::Biased);
+}
+
+#[test]
+fn without_an_upper_end_too_large_a_mean_is_still_refuted() {
+    let exponential = Exponential::new(0.37).unwrap();
+    let check = |times: f64| {
+        let check = Unbiased::new(1.0 / 0.37 / times, [0.0, f64::INFINITY]).unwrap();
+        check.within(1e-2).unwrap().seed(common::seed(90)).max_draws(1_000_000).run(&exponential).unwrap()
+    };
+    assert_eq!(check(1.1).verdict, Verdict::Biased);
+    assert_eq!(check(1.0).verdict, Verdict::Undecided, "the lower side cannot be shown");
+    assert_eq!(check(0.9).verdict, Verdict::Undecided, "nor too small a mean");
+}
+
+#[test]
+fn an_estimator_that_never_varies_is_judged_too() {
+    let constant =
+        |value: f64| Unbiased::new(0.8, [0.0, 2.0]).unwrap().run(&from_fn(move |_| value)).unwrap();
+    assert_eq!(constant(0.8).verdict, Verdict::Unbiased);
+    assert_eq!(constant(0.81).verdict, Verdict::Biased);
+    assert_eq!(constant(0.0).verdict, Verdict::Biased);
+    assert_eq!(constant(2.0).verdict, Verdict::Biased);
+}
+
+#[test]
+fn too_few_draws_allowed_are_undecided_not_a_pass() {
+    let report = check_of(2, 1e-4).max_draws(100_000).run(&right(2, 0.0).0).unwrap();
+    assert_eq!(report.verdict, Verdict::Undecided);
+    assert!(report.to_string().starts_with("undecided after"));
+}
+
+#[test]
+fn a_draw_outside_its_range_is_an_error_that_shows_it() {
+    let sometimes = from_fn(|rng| if rng.uniform() < 1e-3 { 1.5 } else { rng.uniform() });
+    let error = Unbiased::new(0.5, [0.0, 1.0]).unwrap().run(&sometimes).unwrap_err();
+    assert!(matches!(error, Error::OutOfRange { value: 1.5, range: [0.0, 1.0], .. }), "{error}");
+    assert!(error.to_string().contains("outside the range [0, 1]"), "{error}");
+    let nan = from_fn(|rng| if rng.uniform() < 1e-3 { f64::NAN } else { 0.5 });
+    assert!(matches!(Unbiased::new(0.5, [0.0, 1.0]).unwrap().run(&nan), Err(Error::Draw { .. })));
+}
+
+#[test]
+fn bad_input_is_an_error() {
+    for (truth, range) in [
+        (0.0, [0.0, 1.0]),
+        (1.0, [0.0, 1.0]),
+        (2.0, [0.0, 1.0]),
+        (f64::NAN, [0.0, 1.0]),
+        (0.5, [1.0, 0.0]),
+        (0.5, [f64::NEG_INFINITY, 1.0]),
+        (0.5, [f64::NAN, 1.0]),
+        (0.5, [0.0, f64::NAN]),
+    ] {
+        assert!(Unbiased::new(truth, range).is_err(), "{truth} in {range:?}");
+    }
+    let check = Unbiased::new(0.5, [0.0, 1.0]).unwrap();
+    for bad in [0.0, -1.0, f64::NAN, 1.0, 2.0] {
+        assert!(check.within(bad).is_err() && check.within_absolute(bad).is_err(), "δ = {bad}");
+        assert!(check.alpha(bad).is_err() && check.beta(bad).is_err(), "α = {bad}");
+        let exponential = Exponential::new(1.0).unwrap();
+        assert!(distributed_as(&exponential, |x| exponential.cdf(x), 0.01, bad, 1).is_err(), "α = {bad}");
+    }
+    for bad in [0.0, -1.0, f64::NAN, 2.0, 1e-9] {
+        assert!(
+            check::directions(&Hemisphere::Cosine, Hemisphere::Cosine, bad, 1e-12, 1).is_err(),
+            "D = {bad}"
+        );
+    }
+}
+
+// ---- without noise ----
+
+#[test]
+fn moments_by_quadrature_are_exact() {
+    let close = |value: f64, truth: f64| {
+        assert!((value - truth).abs() <= 1e-9 * truth.abs().max(1e-3), "{value} for {truth}")
+    };
+    for rate in [0.37, 1.0, 41.0] {
+        let exact = exactly(&Exponential::new(rate).unwrap(), 1).unwrap();
+        close(exact.mean, 1.0 / rate);
+        close(exact.variance, 1.0 / (rate * rate));
+    }
+    let cube = Lambertian::new(0.61).unwrap();
+    let uniform = exactly(&cube.uniform_estimator(Direction::cos_theta), 2).unwrap();
+    close(uniform.mean, 0.61 * 2.0 / 3.0);
+    close(uniform.variance, 0.61 * 0.61 * (4.0 / 5.0 - 4.0 / 9.0));
+    let cosine = exactly(&cube.cosine_estimator(Direction::cos_theta), 2).unwrap();
+    close(cosine.mean, 0.61 * 2.0 / 3.0);
+    close(cosine.variance, 0.61 * 0.61 * (0.5 - 4.0 / 9.0));
+    // a jump: the coin of roulette, and E[X²]/p − μ²
+    let roulette =
+        exactly(&Roulette::new(0.83).unwrap().wrap(from_fn(|rng| 3.0 * rng.uniform().powi(2))), 2).unwrap();
+    close(roulette.mean, 1.0);
+    close(roulette.variance, 9.0 / 5.0 / 0.83 - 1.0);
+}
+
+#[test]
+fn an_estimator_of_more_numbers_cannot_be_integrated() {
+    let three = from_fn(|rng| rng.uniform() * rng.uniform() * rng.uniform());
+    assert!(matches!(exactly(&three, 2), Err(Error::NotIntegrable { .. })));
+    assert!(exactly(&three, 0).is_err() && exactly(&three, 4).is_err());
+    let nan = from_fn(|rng| (rng.uniform() - 0.5).sqrt());
+    assert!(matches!(exactly(&nan, 1), Err(Error::NotIntegrable { .. })));
+}
+
+// ---- distributions ----
+
+#[test]
+fn samplers_with_another_law_are_refused() {
+    let exponential = Exponential::new(0.37).unwrap();
+    let cdf = |x: f64| exponential.cdf(x);
+    let agrees = |sampler: &dyn Estimator| {
+        distributed_as(&sampler, cdf, 0.01, 1e-12, common::seed(100)).unwrap().agrees
+    };
+    assert!(agrees(&exponential));
+    // right mean, wrong law
+    assert!(!agrees(&from_fn(|rng| 2.0 * rng.uniform() / 0.37)));
+    // a tail cut where 2 % of the law is
+    let end = exponential.inverse_cdf(0.98).unwrap();
+    assert!(!agrees(&from_fn(move |rng| exponential.draw(rng).min(end))));
+    // a NaN is no draw
+    let nan = from_fn(|_| f64::NAN);
+    assert!(distributed_as(&nan, cdf, 0.1, 1e-12, 1).is_err());
+}
+
+#[test]
+fn laws_with_jumps_are_compared_at_both_sides_of_each() {
+    let roulette = Roulette::new(0.83).unwrap();
+    let cdf = |x: f64| if x < 0.0 { 0.0 } else { roulette.cdf(x as u64) };
+    let by_inversion = roulette.bounces_by_inversion().unwrap();
+    assert!(distributed_as(&by_inversion, cdf, 0.01, 1e-12, common::seed(110)).unwrap().agrees);
+    let one_more = from_fn(|rng| by_inversion.draw(rng) + 1.0);
+    assert!(!distributed_as(&one_more, cdf, 0.01, 1e-12, common::seed(111)).unwrap().agrees);
+    // spread between the integers: the left limits differ
+    let spread = from_fn(|rng| by_inversion.draw(rng) + 0.999 * rng.uniform());
+    assert!(!distributed_as(&spread, cdf, 0.01, 1e-12, common::seed(112)).unwrap().agrees);
+}
+
+/// A sampler of directions that is wrong in a way.
+struct Wrong(fn(&mut Stream) -> Direction);
+
+impl Distribution<Direction> for Wrong {
+    fn sample<R: rand::Rng + ?Sized>(&self, rng: &mut R) -> Direction {
+        (self.0)(&mut Stream::new(rng.next_u64(), rng.next_u64()))
+    }
+}
+
+#[test]
+fn directions_of_another_density_are_refused() {
+    use Hemisphere::{Cosine, Uniform};
+    let agrees = |sampler: Wrong, claimed| {
+        check::directions(&sampler, claimed, 0.02, 1e-12, common::seed(120)).unwrap().agrees
+    };
+    for hemisphere in [Uniform, Cosine] {
+        assert!(check::directions(&hemisphere, hemisphere, 0.01, 1e-12, common::seed(121)).unwrap().agrees);
+    }
+    assert!(agrees(Wrong(|rng| Uniform.sample(rng)), Uniform));
+    assert!(!agrees(Wrong(|rng| Uniform.sample(rng)), Cosine));
+    assert!(!agrees(Wrong(|rng| Cosine.sample(rng)), Uniform));
+    // half of the azimuths
+    assert!(!agrees(
+        Wrong(|rng| Direction::polar((1.0 - rng.uniform()).sqrt(), std::f64::consts::PI * rng.uniform())
+            .unwrap()),
+        Cosine
+    ));
+    // one uniform number for both: only the cells see it
+    let tied = Wrong(|rng| {
+        let u = rng.uniform();
+        Direction::polar((1.0 - u).sqrt(), std::f64::consts::TAU * u).unwrap()
+    });
+    let found = check::directions(&tied, Cosine, 0.02, 1e-12, common::seed(122)).unwrap();
+    assert!(!found.agrees && matches!(found.place, check::Place::Cell(..)), "{found}");
+}
+
+/// The band of DKW and the cells together: 300 right samplers at α = 0.3, none of which has been seen to be refused more than 90 times; by
+/// the bound at most 30 % are, and the binomial's 7 std errors are 18 %.
+#[test]
+fn right_samplers_are_refused_no_more_often_than_claimed() {
+    let exponential = Exponential::new(0.37).unwrap();
+    let mut refused = [0, 0];
+    for seed in 0..300 {
+        let seed = common::seed(5000 + seed);
+        refused[0] +=
+            i32::from(!distributed_as(&exponential, |x| exponential.cdf(x), 0.1, 0.3, seed).unwrap().agrees);
+        refused[1] += i32::from(
+            !check::directions(&Hemisphere::Cosine, Hemisphere::Cosine, 0.1, 0.3, seed).unwrap().agrees,
+        );
+    }
+    println!("refused at α = 0.3: {refused:?} of 300");
+    assert!(refused.iter().all(|&count| count <= 90 + 54), "{refused:?}");
+    assert!(refused[0] >= 10, "the band is never reached: {refused:?}");
+}
+
+#[test]
+fn reports_are_sentences() {
+    let report = check_of(3, 1e-2).run(&right(3, 0.0).0).unwrap();
+    assert!(report.to_string().starts_with("unbiased within 4.1e-3: 0.40"), "{report}");
+    let report = check_of(3, 1e-2).run(&right(3, -0.5).0).unwrap();
+    assert!(report.to_string().contains("times the truth"), "{report}");
+    let agreement = check::directions(&Hemisphere::Uniform, Hemisphere::Cosine, 0.1, 1e-6, 1).unwrap();
+    assert!(agreement.to_string().starts_with("distributed not as claimed"), "{agreement}");
+    assert!(agreement.to_string().contains("not seen:"));
+}
