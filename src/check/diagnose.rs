@@ -26,11 +26,17 @@ impl Measurement {
         (self.estimate.mean() / unit, self.estimate.std_error().unwrap_or(f64::INFINITY) / unit.abs())
     }
 
-    /// ((measured − predicted)/error)², the error not below rounding; 0 where nothing finite is predicted.
+    /// ((measured − predicted)/error)², the error not below rounding.
+    ///
+    /// Draws without a mean have no ratio to compare with, but show themselves all the same: the largest draw is then a good part of their sum, so that
+    /// the std error is, too. The misfit grows as the std error falls below 5 % of the mean.
     fn misfit(&self, predicted: f64) -> f64 {
         let (ratio, error) = self.ratio();
-        if !predicted.is_finite() {
-            return 0.0;
+        if predicted.is_nan() {
+            return f64::INFINITY;
+        }
+        if predicted.is_infinite() {
+            return (0.05 * ratio / error.max(ROUNDING * ratio.abs())).powi(2);
         }
         let floor = ROUNDING * predicted.abs().max(1.0);
         let misfit = (ratio - predicted) / error.hypot(floor);
@@ -116,13 +122,13 @@ pub fn diagnose(measurements: &[Measurement]) -> Result<Diagnosis> {
         measurements.iter().map(|measurement| measurement.misfit(predicted(&measurement.probe))).sum()
     };
     let probes = || measurements.iter().map(|measurement| &measurement.probe);
-    let finite = |mistake: &Mistake| probes().filter(|probe| mistake.ratio(probe).is_finite()).count();
+    let edge = region(measurements.len(), REGION);
 
     let right = chi_square(&Probe::right_ratio);
     let mut groups: Vec<Group> = Vec::new();
     for mistake in topic.mistakes() {
         let chi_square = chi_square(&|probe| mistake.ratio(probe));
-        if !(chi_square <= region(finite(mistake), REGION)) {
+        if !(chi_square <= edge) {
             continue;
         }
         match groups
@@ -156,7 +162,7 @@ fn region(probes: usize, outside: f64) -> f64 {
     match ChiSquared::new(probes as f64) {
         // statrs solves for the quantile with few digits; which is plenty here
         Ok(chi_square) => chi_square.inverse_cdf(1.0 - outside),
-        Err(_) => f64::NEG_INFINITY, // no finite prediction to compare with
+        Err(_) => f64::NEG_INFINITY, // no probes
     }
 }
 

@@ -94,11 +94,11 @@ pub fn judge_answer(question: &str, text: &str) -> Result<Judgement> {
         slips.iter().filter_map(|slip| Some((fits(slip.value)?, *slip))).collect();
     near.sort_by(|a, b| a.0.total_cmp(&b.0));
     let nearest = near.first().map_or(f64::INFINITY, |(off, _)| *off);
+    let exact = 1e-9 * value.abs();
+    // half a unit of the last digit: 5 % of the answer is no answer
+    let too_coarse = step > 0.1 * truth.abs() && (value - truth).abs() > exact;
     Ok(match fits(truth) {
-        // half a unit of the last digit: 5 % of the answer is no answer
-        Some(off) if off <= nearest && step > 0.1 * truth.abs() && off > 1e-9 * truth.abs() => {
-            Judgement::TooFewDigits
-        }
+        Some(_) if too_coarse && nearest > exact => Judgement::TooFewDigits,
         Some(off) if off <= nearest => Judgement::Right,
         _ if !near.is_empty() => Judgement::LooksLike(near.into_iter().map(|(_, slip)| slip).collect()),
         _ => Judgement::Unknown { ratio: value / truth },
@@ -299,12 +299,13 @@ fn parse(text: &str) -> Result<(f64, f64)> {
     let not_understood = || Error::Usage(format!("the answer “{text}” is not a number or an expression"));
     // a plain decimal, with a comma perhaps
     let decimal = if clean.contains('.') { clean.clone() } else { clean.replace(',', ".") };
-    let digits = decimal.trim_start_matches(['+', '-']);
+    let (mantissa, exponent) = decimal.split_once(['e', 'E']).unwrap_or((&decimal, "0"));
+    let digits = mantissa.trim_start_matches(['+', '-']);
     if digits.chars().all(|c| c.is_ascii_digit() || c == '.')
-        && let Ok(value) = decimal.parse::<f64>()
+        && let (Ok(value), Ok(exponent)) = (decimal.parse::<f64>(), exponent.parse::<i32>())
     {
-        let places = digits.split_once('.').map_or(0, |(_, places)| places.len());
-        let step = if places == 0 { 0.0 } else { 10f64.powf(-(places as f64)) };
+        let places = digits.split_once('.').map(|(_, places)| places.len() as f64);
+        let step = places.map_or(0.0, |places| 10f64.powf(f64::from(exponent) - places));
         return finite(value).map(|value| (value, step)).ok_or_else(not_understood);
     }
     let spelled = clean

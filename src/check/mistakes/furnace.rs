@@ -132,6 +132,16 @@ pub(super) fn mistakes() -> Vec<Mistake> {
             |bounces| Some(bounces.unwrap_or(10).min(10)),
             |albedo, bounces| sum(albedo, Some(bounces.unwrap_or(10).min(10))),
         ),
+        length(
+            words(
+                "5",
+                "stops at five bounces",
+                "Σ to min(K, 5)",
+                "end paths by roulette: a cap loses what comes after",
+            ),
+            |bounces| Some(bounces.unwrap_or(5).min(5)),
+            |albedo, bounces| sum(albedo, Some(bounces.unwrap_or(5).min(5))),
+        ),
         path(
             words("4.3", "the first emission skipped", "Σ from 1", every),
             |vertex, _, _| if vertex.bounce == 0 { 0.0 } else { vertex.throughput },

@@ -1,6 +1,6 @@
 //! Mistakes in estimating the light that a diffuse surface reflects.
 
-use std::f64::consts::{FRAC_1_PI, FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, PI, TAU};
+use std::f64::consts::{FRAC_1_PI, FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, PI, SQRT_2, TAU};
 use std::sync::LazyLock;
 
 use super::{Attempt, Mistake, Probe, Setup, Words, words};
@@ -446,7 +446,8 @@ fn cube() -> Mistake {
             mean(|cos| 2.0 * cos),
             mean(|cos| 2.0 * cos * cos),
             mean(|cos| 2.0 * cos.powi(3)),
-            mean(|cos| if cos * cos > 0.5 { 2.0 * cos } else { 0.0 }),
+            // cos² θ > ½ is a disc on the top face, and nothing on the others
+            PI * (SQRT_2 - 1.0) / 3.0,
         ]
     });
     Mistake::new(words, 0, wrong, |setup| match *setup {
