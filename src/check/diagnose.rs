@@ -128,7 +128,8 @@ pub fn diagnose(measurements: &[Measurement]) -> Result<Diagnosis> {
     let mut groups: Vec<Group> = Vec::new();
     for mistake in topic.mistakes() {
         let chi_square = chi_square(&|probe| mistake.ratio(probe));
-        if !(chi_square <= edge) {
+        let inside = chi_square <= edge; // NaN is not
+        if !inside {
             continue;
         }
         match groups
@@ -160,7 +161,6 @@ pub fn diagnose(measurements: &[Measurement]) -> Result<Diagnosis> {
 /// χ² below which all but a share `outside` of measurements stay.
 fn region(probes: usize, outside: f64) -> f64 {
     match ChiSquared::new(probes as f64) {
-        // statrs solves for the quantile with few digits; which is plenty here
         Ok(chi_square) => chi_square.inverse_cdf(1.0 - outside),
         Err(_) => f64::NEG_INFINITY, // no probes
     }
@@ -282,5 +282,19 @@ impl fmt::Display for Diagnosis {
             write!(f, "\n  {}: {ratio:.4} ± {error:.4}{note}", measurement.probe)?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With two degrees of freedom P(χ² > x) = e^(−x/2).
+    #[test]
+    fn the_region_has_its_probability() {
+        for outside in [REGION, FALSE_ALARM] {
+            let off = region(2, outside) / (-2.0 * outside.ln()) - 1.0;
+            assert!(off.abs() <= 1e-6, "{outside}: {off}");
+        }
     }
 }

@@ -295,7 +295,7 @@ fn all() -> Vec<HandAnswer> {
 
 /// The value of an expression, and the unit of its last decimal; 0 where it is exact.
 fn parse(text: &str) -> Result<(f64, f64)> {
-    let clean = text.trim().trim_end_matches('.').replace('−', "-").replace('·', "*").replace('×', "*");
+    let clean = text.trim().trim_end_matches('.').replace('−', "-").replace(['·', '×'], "*");
     let not_understood = || Error::Usage(format!("the answer “{text}” is not a number or an expression"));
     // a plain decimal, with a comma perhaps
     let decimal = if clean.contains('.') { clean.clone() } else { clean.replace(',', ".") };

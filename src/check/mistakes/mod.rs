@@ -500,14 +500,16 @@ impl Mistake {
     pub fn told_apart<'p>(&self, other: &Self, probes: impl IntoIterator<Item = &'p Probe>) -> bool {
         probes.into_iter().any(|probe| {
             let (here, there) = (self.ratio(probe), other.ratio(probe));
-            // equal covers infinite ratios
-            here != there && !((here - there).abs() <= SAME * here.abs().max(1.0))
+            // equality covers infinite ratios
+            let same = here == there || (here - there).abs() <= SAME * here.abs().min(there.abs()).max(1.0);
+            !same
         })
     }
 
     /// Whether the probes see it at all, given unlimited draws: some ratio is not a right estimator's.
     pub fn is_seen_by(&self, probe: &Probe) -> bool {
-        !((self.ratio(probe) - probe.right_ratio()).abs() <= SAME)
+        let invisible = (self.ratio(probe) - probe.right_ratio()).abs() <= SAME;
+        !invisible
     }
 
     /// Whether the probes tell it from `other` by the std deviation of the draws, to one part in ten.
