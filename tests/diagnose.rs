@@ -37,7 +37,7 @@ fn mistake(topic: Topic, name: &str) -> &'static Mistake {
 /// Less than 1 % off everywhere, which 1e5 draws a probe cannot be relied on to show: 1 − U kept above 1e-3, U on 2¹⁵ levels, paths of ten bounces.
 fn is_faint(mistake: &Mistake) -> bool {
     let probes = mistake.topic().probes();
-    probes.iter().all(|probe| !((mistake.ratio(probe) - probe.right_ratio()).abs() > 1e-2))
+    probes.iter().all(|probe| (mistake.ratio(probe) - probe.right_ratio()).abs() <= 1e-2)
 }
 
 // ---- right estimators ------------------------------------------------------------------------------------------
@@ -256,6 +256,7 @@ fn probes_have_the_right_truths() {
 }
 
 /// The table of known ratios, worked out independently, to the digits that it gives.
+#[allow(clippy::approx_constant)] // copied from a table
 #[test]
 fn predictions_agree_with_the_known_table() {
     let mut probe_sets: Vec<(Topic, &str, Vec<Probe>, Vec<f64>)> = Vec::new();
@@ -776,10 +777,8 @@ proptest! {
             Probe::roulette(a),
             Probe::bounces(a),
             Probe::furnace(a, b, bounces),
-        ] {
-            if let Ok(probe) = probe {
-                prop_assert!(!probe.truth().is_nan());
-            }
+        ].into_iter().flatten() {
+            prop_assert!(!probe.truth().is_nan());
         }
     }
 
