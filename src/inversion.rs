@@ -2,6 +2,8 @@
 //!
 //! If U is uniform on [0, 1), then F⁻(U) = inf{x : F(x) ≥ U} has the cdf F. For the exponential distribution the inverse
 //! is a formula ([`Exponential`]); for any other one-dimensional cdf it is found by bisection ([`Inversion`]).
+//!
+//! One's own estimator for question 1.1 is checked by `examples/check_mine.rs`.
 
 use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};

@@ -3,6 +3,8 @@
 //! Every integral is L_r = ∫ f_r L_i cos θ dω over the directions above the surface, with f_r = ρ/π.
 //! [`Lambertian`] has its estimators for any light; a [`Light`] is one for which the answer, and the variance
 //! of each estimator, is known exactly.
+//!
+//! One's own estimator for question 3.5 is checked by `examples/check_mine.rs`.
 
 use std::f64::consts::PI;
 

@@ -34,6 +34,8 @@
 //! | 3 The diffuse cube | [`hemisphere`], [`lambertian`] | uniform and cosine directions, a Lambertian surface, lights with exact variances |
 //! | 5 Russian roulette | [`roulette`] | bounce counts, the wrapper X_rr, and what roulette costs and buys |
 //!
+//! Whether an estimator is unbiased, and which classic mistake it looks like if not, is what [`check`] says; `examples/check_mine.rs` is the place to try one's own.
+//!
 //! Underneath lie [`density`](crate::Density), [`run`], [`estimate`](mod@estimate), [`stream`] and [`error`]; above, with the feature `workbook` (on by default),
 //! `figure` and `workbook`. The files in `examples/` are the answers to read, one a question.
 //!

@@ -48,6 +48,7 @@ fn examples() -> Vec<String> {
     let names = files.filter(|path| path.extension().is_some_and(|ending| ending == "rs"));
     let mut names: Vec<_> =
         names.map(|path| path.file_stem().unwrap().to_string_lossy().into_owned()).collect();
+    names.retain(|name| name.starts_with('q'));
     names.sort();
     names
 }
@@ -401,6 +402,94 @@ fn help_lists_every_option() {
                 assert!(text.contains(option), "{example}: {option}");
             }
         }
+    }
+}
+
+#[test]
+fn every_example_has_a_hint_that_does_not_tell() {
+    for question in unbiased::workbook::questions() {
+        let output = run(question.example, &["--hint"]);
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(output.status.success() && text.trim() == format!("{}  {}", question.id, question.hint));
+        assert!(!letters(&text).contains(&letters(question.formula)), "{}", question.id);
+    }
+    let all = String::from_utf8(run("worksheet", &["--hint"]).stdout).unwrap();
+    assert_eq!(all.lines().count(), unbiased::workbook::questions().count());
+}
+
+/// What `check_mine` says to these arguments and this standard input.
+fn check_mine(arguments: &[&str], input: &str) -> (Option<i32>, String) {
+    use std::io::Write;
+    let tests = std::env::current_exe().unwrap();
+    let program = tests.parent().and_then(Path::parent).unwrap().join("examples").join("check_mine");
+    let pipe = std::process::Stdio::piped;
+    let mut command = Command::new(program);
+    let mut child = command.args(arguments).stdin(pipe()).stdout(pipe()).stderr(pipe()).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
+    let output = child.wait_with_output().unwrap();
+    let said = [output.stdout, output.stderr].concat();
+    (output.status.code(), String::from_utf8(said).unwrap())
+}
+
+#[test]
+fn the_readers_estimator_is_judged_and_its_mistake_named() {
+    let (code, said) = check_mine(&["--draws", "200000"], "");
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("consistent with:\n1. uniform directions, the cosine weight"), "{said}");
+    assert!(said.contains("To mend it: "), "{said}");
+}
+
+#[test]
+fn numbers_worked_out_by_hand_are_judged_in_words() {
+    for (question, answer, words) in [
+        ("1.2", "1.386", "right to the digits given"),
+        ("1.2", "ln 4", "right"),
+        ("1.2", "0.602", "logarithm to base 10"),
+        ("1.2", "7", "none of the known"),
+        ("3.2", "ρ", "right"),
+        ("5.1(i)", "0.2", "right"),
+        ("5.1(ii)", "16/125", "right"),
+        ("5.1(iii)", "5", "looks like"),
+        ("5.2", "1/4", "right"),
+    ] {
+        let (code, said) = check_mine(&["--question", question, "--answer", answer], "");
+        assert_eq!(code, Some(0), "{said}");
+        assert!(said.contains(words), "{question} = {answer}: {said}");
+    }
+}
+
+#[test]
+fn draws_of_any_program_are_judged_from_standard_input() {
+    // samples by inversion on a regular grid of u: no luck involved
+    let samples = |f: &dyn Fn(f64) -> f64| -> String {
+        (0..20_000).map(|i| format!("{}\n", f((f64::from(i) + 0.5) / 20_000.0))).collect()
+    };
+    let arguments = ["--question", "1.1", "--draws-from", "-"];
+    let (code, said) = check_mine(&arguments, &samples(&|u| -(1.0 - u).ln() / 0.37));
+    assert!(code == Some(0) && said.contains("Nothing wrong seen"), "{said}");
+    let (_, said) = check_mine(&arguments, &samples(&|u| -(1.0 - u).log10() / 0.37));
+    assert!(said.contains("1. log base 10"), "{said}");
+    let (_, said) = check_mine(&arguments, &samples(&|u| -0.62 * (1.0 - u).ln() / 0.37));
+    assert!(said.contains("none of the known mistakes"), "{said}");
+}
+
+#[test]
+fn what_cannot_be_judged_is_said_in_one_sentence() {
+    for (arguments, input, part) in [
+        (&["--question", "1.3"][..], "", "question 1.3 has no estimator to check"),
+        (&["--question", "5.1"], "", "about “number of bounces”"),
+        (&["--question", "1.2", "--answer", "many"], "", "not a number"),
+        (&["--question", "9.9", "--answer", "1"], "", "9.9"),
+        (&["--question", "1.1", "--draws-from", "-"], "1.0\nx\n", "line 2 is no draw: \"x\""),
+        (&["--question", "1.1", "--draws-from", "-"], "1.0\nNaN\n", "line 2 is no draw"),
+        (&["--question", "1.1", "--draws-from", "-"], "", "at least 2"),
+        (&["--question", "1.1", "--draws-from", "no-such-file"], "", "could not be read"),
+        (&["--question", "1.1", "--draws-from", "-", "--probe", "99"], "", "--probe is 1 to"),
+        (&["--colour"], "", "--colour"),
+    ] {
+        let (code, said) = check_mine(arguments, input);
+        assert_eq!(code, Some(2), "{arguments:?}: {said}");
+        assert!(said.contains(part) && said.trim().lines().count() == 1, "{arguments:?}: {said}");
     }
 }
 

@@ -13,6 +13,8 @@
 //!
 //! The points of the last three depend on each other, so a whole replicate, randomised afresh, is one draw:
 //! draws are independent, and the error bar made of them is right.
+//!
+//! One's own estimator for question 2.1 is checked by `examples/check_mine.rs`.
 
 mod integrand;
 mod replicate;

@@ -3,6 +3,8 @@
 //! X_rr = X/p_rr with probability p_rr, else 0, so E\[X_rr\] = E\[X\]. [`Roulette`] flips the coin, [`Roulette::wrap`] plays it on
 //! any estimator, the number of bounces N that it allows has its laws in closed form, and [`LightModel`] says exactly
 //! what roulette costs and what it buys.
+//!
+//! One's own estimator for question 5.1 is checked by `examples/check_mine.rs`.
 
 use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};

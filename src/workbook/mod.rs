@@ -18,6 +18,7 @@
 //! ```
 
 mod answer;
+mod check_mine;
 mod options;
 mod page;
 mod print;
@@ -29,6 +30,7 @@ mod section5;
 use std::process::ExitCode;
 
 pub use answer::{Answer, Kind};
+pub use check_mine::check_mine;
 pub use options::Options;
 
 use crate::error::{Error, Result};
@@ -46,6 +48,8 @@ pub struct Question {
     pub title: &'static str,
     /// What is asked.
     pub statement: &'static str,
+    /// A nudge that does not tell the answer.
+    pub hint: &'static str,
     /// The closed form in a line of plain text.
     pub formula: &'static str,
     /// The same in LaTeX, a displayed formula each.
@@ -105,7 +109,7 @@ pub type AnswerFn = fn(&Options) -> Result<Vec<Answer>>;
 /// An example's `main`: reads the command line, answers the question, prints the answers and saves their figures.
 pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
     ended(question(id).and_then(|question| {
-        let Request::Run(options) = Request::read(&[question])? else { return print::help(&[question]) };
+        let Some(options) = Request::read(&[question])?.options(&[question])? else { return Ok(()) };
         let options = options.for_question(question);
         options.with_out(|| print::answers(question, &answer(&options)?, &options))
     }))
@@ -116,7 +120,7 @@ pub fn worksheet(answers: &[(&str, AnswerFn)]) -> ExitCode {
     let asked = answers.iter().map(|(id, answer)| Ok((question(id)?, *answer))).collect::<Result<Vec<_>>>();
     ended(asked.and_then(|asked| {
         let questions: Vec<_> = asked.iter().map(|(question, _)| *question).collect();
-        let Request::Run(options) = Request::read(&questions)? else { return print::help(&questions) };
+        let Some(options) = Request::read(&questions)?.options(&questions)? else { return Ok(()) };
         options.with_out(|| {
             let mut answered = Vec::new();
             for (question, answer) in &asked {

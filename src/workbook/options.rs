@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use lexopt::{Arg, Parser};
 
-use super::{Answer, Question};
+use super::{Answer, Question, print};
 use crate::error::{Error, Result};
 use crate::figure::Edition;
 use crate::run::{Budget, Estimator, Outcome, Run};
@@ -50,17 +50,26 @@ impl Default for Options {
 /// What the command line asks for.
 pub(super) enum Request {
     Help,
+    Hint,
     Run(Options),
 }
 
 impl Request {
+    /// The options of a run; help and hints are printed at once.
+    pub fn options(self, questions: &[&Question]) -> Result<Option<Options>> {
+        match self {
+            Self::Help => print::help(questions).map(|()| None),
+            Self::Hint => print::hints(questions).map(|()| None),
+            Self::Run(options) => Ok(Some(options)),
+        }
+    }
+
     /// Reads this program's command line, with the options of these questions beside the common ones.
     pub fn read(questions: &[&'static Question]) -> Result<Self> {
         Self::parse(Parser::from_env(), questions)
     }
 
     pub fn parse(mut line: Parser, questions: &[&'static Question]) -> Result<Self> {
-        let usage = |error: lexopt::Error| Error::Usage(error.to_string());
         let mut options = Options::default();
         while let Some(argument) = line.next().map_err(usage)? {
             let name = match argument {
@@ -70,6 +79,7 @@ impl Request {
             };
             match name.as_str() {
                 "help" => return Ok(Self::Help),
+                "hint" => return Ok(Self::Hint),
                 "json" => options.json = true,
                 "draws" => options.draws = Some(count(&mut line, "--draws")?),
                 "seed" => options.seed = whole(&mut line, "--seed")?,
@@ -93,17 +103,22 @@ impl Request {
     }
 }
 
-fn text(line: &mut Parser, name: &str) -> Result<String> {
-    let value = line.value().map_err(|error| Error::Usage(error.to_string()))?;
+/// A command line that was not understood.
+pub(super) fn usage(error: lexopt::Error) -> Error {
+    Error::Usage(error.to_string())
+}
+
+pub(super) fn text(line: &mut Parser, name: &str) -> Result<String> {
+    let value = line.value().map_err(usage)?;
     value.into_string().map_err(|_| Error::Usage(format!("the value of {name} is not text")))
 }
 
-fn whole(line: &mut Parser, name: &str) -> Result<u64> {
+pub(super) fn whole(line: &mut Parser, name: &str) -> Result<u64> {
     let given = text(line, name)?;
     given.parse().map_err(|_| Error::Usage(format!("{name} takes a whole number, not \"{given}\"")))
 }
 
-fn count(line: &mut Parser, name: &str) -> Result<u64> {
+pub(super) fn count(line: &mut Parser, name: &str) -> Result<u64> {
     match whole(line, name)? {
         0 => Err(Error::Usage(format!("{name} takes a positive whole number, not 0"))),
         count => Ok(count),

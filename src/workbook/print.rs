@@ -36,7 +36,7 @@ pub(super) fn page(path: &Path, options: &Options) -> Result<()> {
 }
 
 /// A reader that has seen enough is no error; a full disk is.
-fn until_the_pipe_closes(error: io::Error) -> Result<()> {
+pub(super) fn until_the_pipe_closes(error: io::Error) -> Result<()> {
     match error.kind() {
         io::ErrorKind::BrokenPipe => Ok(()),
         _ => Err(Error::Write { path: "standard output".into(), reason: error.to_string() }),
@@ -178,6 +178,12 @@ fn wrapped(out: &mut impl Write, text: &str) -> io::Result<()> {
     writeln!(out, "{line}")
 }
 
+/// `--hint`
+pub(super) fn hints(questions: &[&Question]) -> Result<()> {
+    let print = |question: &&Question| writeln!(io::stdout(), "{}  {}", question.id, question.hint);
+    questions.iter().try_for_each(print).or_else(until_the_pipe_closes)
+}
+
 /// `--help`
 pub(super) fn help(questions: &[&Question]) -> Result<()> {
     let mut text = String::new();
@@ -193,6 +199,7 @@ pub(super) fn help(questions: &[&Question]) -> Result<()> {
     --out DIR            folder for figures and pages (worksheet)
     --json               one JSON object a line
     --edition NAME       student or solution (solution)
+    --hint               a nudge that does not tell the answer
 ";
     for question in questions {
         for parameter in question.parameters {

@@ -10,6 +10,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         title: "Sampling the exponential distribution",
         statement: "U is uniform on [0, 1). Which function of U is a sample of the exponential distribution with rate λ, whose density is \
                     p(x) = λ e^(−λx) for x ≥ 0? And how is any other one-dimensional distribution sampled, given its cdf F?",
+        hint: "Integrate the density to get F(x), set F(x) equal to u, and solve for x. What happens at u = 1?",
         formula: "x = F⁻¹(u) = −ln(1 − u)/λ;  E[X] = 1/λ, Var X = 1/λ²",
         latex: &[
             r"F(x) = \int_0^x \lambda e^{-\lambda t}\,dt = 1 - e^{-\lambda x}",
@@ -43,6 +44,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         id: "1.2",
         title: "One sample, read off the graph",
         statement: "For λ = 1 the graphs show the CDF, the inverse CDF and the PDF. If U = 0.75, which value is sampled? Mark the point on the CDF.",
+        hint: "F is drawn with x along the bottom. On which axis does a probability such as 0.75 stand?",
         formula: "x = −ln(1 − 0.75) = ln 4 = 1.386294, where p(x) = 0.25",
         latex: &[r"x = -\ln(1 - 0.75) = \ln 4 \approx 1.386294", r"p(x) = e^{-\ln 4} = 0.25"],
         answer: "Start at 0.75 on the vertical axis of the CDF, go across to the curve and down to x. The same point lies on the inverse \
@@ -67,6 +69,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         id: "1.3",
         title: "The axes of a CDF",
         statement: "What does the x-axis of the CDF's (blue) curve stand for?",
+        hint: "F takes something and gives a probability. What does it take?",
         formula: "x: a value that can be sampled; F(x): the probability of a sample at most x",
         latex: &[r"F(x) = P(X \le x)"],
         answer: "The values that can be sampled, here all x ≥ 0. The height of the curve is the probability that a sample is at most x.",

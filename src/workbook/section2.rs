@@ -12,6 +12,7 @@ pub(super) const QUESTIONS: &[Question] = &[Question {
     statement: "A source of random numbers hands out 2n of them, each uniform on [−2, 2] and independent of all \
                 the others. How do you estimate the integral of a function f(x, y) over the square [−2, 2] × \
                 [−2, 2] from them, without bias? And what does that ask of f?",
+    hint: "Each draw is f over the density of the point drawn. What is the density of a pair of independent numbers?",
     formula: "⟨Fₙ⟩ = 1/n Σ f(Xᵢ, Yᵢ)/p(Xᵢ, Yᵢ) = 16/n Σ f(Xᵢ, Yᵢ), if ∫∫ |f| is finite",
     latex: &[
         r"p(x, y) = p(x)\,p(y) = \frac14 \cdot \frac14 = \frac1{16}",

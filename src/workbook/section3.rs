@@ -14,6 +14,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         title: "What the cube emits",
         statement: "A wooden cube scatters light diffusely: its BRDF is f_r = ρ/π. Outgoing radiance is emitted plus reflected radiance, \
                     L_o = L_e + L_r with L_r = ∫ f_r L_i cos θ dω over the hemisphere. What is the cube's emitted radiance L_e?",
+        hint: "Who makes the light that leaves a piece of wood?",
         formula: "L_e = 0",
         latex: &[
             r"L_o(\mathbf p, \omega_o) = L_e(\mathbf p, \omega_o) + \int_{H^2} f_r\, L_i(\mathbf p, \omega)\cos\theta\,d\omega",
@@ -33,6 +34,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         title: "Under a uniform sky",
         statement: "The incoming radiance L_i is the same from every direction of the hemisphere above p, on the cube's top face. What is the reflected \
                     radiance L_r? (Write dω in terms of θ and φ.)",
+        hint: "dω = sin θ dθ dφ. Substitute u = sin θ.",
         formula: "L_r = ρ L_i",
         latex: &[
             r"L_r = \frac{\rho}{\pi} L_i \int_0^{2\pi}\!\! d\varphi \int_0^{\pi/2} \cos\theta \sin\theta\, d\theta = \frac{\rho}{\pi} L_i \cdot 2\pi \cdot \frac12 = \rho L_i",
@@ -56,6 +58,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         id: "3.3",
         title: "What reflected radiance depends on",
         statement: "How does the reflected radiance depend on the direction ω_o towards the eye? How does it depend on ρ?",
+        hint: "Look for ω_o in the BRDF ρ/π, and for ρ in the answer to 3.2.",
         formula: "L_r does not depend on ω_o, and is proportional to ρ in [0, 1]",
         latex: &[r"\frac{\partial L_r}{\partial \omega_o} = 0, \qquad L_r \propto \rho"],
         answer: "The BRDF ρ/π knows no ω_o: that is what makes the surface Lambertian, equally bright from every side. ρ, the albedo, is the share of the \
@@ -80,6 +83,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         title: "Directions in proportion to the BRDF",
         statement: "The light is no longer uniform. To estimate L_r, n directions are drawn over the hemisphere from a density p(ω) proportional to the BRDF. \
                     Write down the Monte Carlo estimator.",
+        hint: "A density in proportion to a constant is a constant, and it integrates to 1 over the hemisphere's 2π steradians.",
         formula: "L̂_r = 1/n Σ (ρ/π) L_i cos θ / (1/2π) = 2ρ/n Σ L_i(ω_j) cos θ_j",
         latex: &[
             r"\hat L_r = \frac1n \sum_{j=1}^n \frac{\frac{\rho}{\pi} L_i(\omega_j)\cos\theta_j}{\frac{1}{2\pi}} = \frac{2\rho}{n}\sum_{j=1}^n L_i(\omega_j)\cos\theta_j",
@@ -115,6 +119,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         id: "3.5",
         title: "Cosine-weighted directions",
         statement: "In practice directions are drawn with density p(ω) = cos θ/π. What is the estimator for n directions now?",
+        hint: "Put the new density under the same integrand, and cancel on paper what cancels.",
         formula: "L̂_r = ρ/n Σ L_i(ω_j)",
         latex: &[
             r"\hat L_r = \frac1n \sum_{j=1}^n \frac{\frac{\rho}{\pi} L_i(\omega_j)\cos\theta_j}{\frac{\cos\theta_j}{\pi}} = \frac{\rho}{n}\sum_{j=1}^n L_i(\omega_j)",
@@ -144,6 +149,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         id: "3.6",
         title: "Which directions are better",
         statement: "Why, conceptually, does cosine-weighted sampling of the hemisphere do better than uniform sampling?",
+        hint: "What is the variance of f/p if p is exactly proportional to f? And where would the light have to come from for cos θ/π to be a poor choice?",
         formula: "under cos^a θ: Var uniform = 4ρ²(a+1)²/((2a+3)(a+2)²), Var cosine = ρ²a²/((a+1)(a+2)²)",
         latex: &[
             r"\operatorname{Var}\frac{f(X)}{p(X)} = \int \frac{f^2}{p} - \Big(\int f\Big)^2",

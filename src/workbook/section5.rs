@@ -16,6 +16,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         title: "Bounces at p_rr = 4/5",
         statement: "With Russian roulette a ray goes on with probability p_rr at every step, and X becomes X/p_rr if it does and 0 if not. Let \
                     p_rr = 4/5, and N ≥ 0 the number of bounces. (i) What is P(N = 0)? (ii) What is P(N = 2)? (iii) What is E[N]?",
+        hint: "N = k means going on k times and then stopping. For E[N], count the trials up to the first stop, and then do not count the stop.",
         formula: "P(N = k) = p_rr^k (1 − p_rr): 1/5, 16/125; E[N] = p_rr/(1 − p_rr) = 4",
         latex: &[
             r"P(N = k) = p_{rr}^k\,(1 - p_{rr}), \qquad P(N=0) = \frac15, \qquad P(N=2) = \Big(\frac45\Big)^2\cdot\frac15 = \frac{16}{125}",
@@ -45,6 +46,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         id: "5.2",
         title: "Bounces at p_rr = 1/5",
         statement: "With p_rr = 1/5, what is the expected number of bounces E[N]?",
+        hint: "The same as 5.1(iii), with another p_rr.",
         formula: "E[N] = p_rr/(1 − p_rr) = 1/4",
         latex: &[r"E[N] = \frac{1}{1-\frac15} - 1 = \frac54 - 1 = \frac14"],
         answer: "Four rays of five stop at once. That is cheap, and it stays unbiased; but with an albedo of 0.8 every bounce that is taken weighs ρ/p_rr = 4 times more than the last \
@@ -67,6 +69,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         id: "5.3",
         title: "Bounces against p_rr",
         statement: "How does a larger p_rr change the expected number of bounces E[N]?",
+        hint: "Write E[N] as a function of p_rr, and let p_rr go to 1.",
         formula: "E[N] = p_rr/(1 − p_rr) grows with p_rr, without bound; Var N = p_rr/(1 − p_rr)²",
         latex: &[
             r"E[N] = \frac{p_{rr}}{1-p_{rr}}, \qquad \operatorname{Var} N = \frac{p_{rr}}{(1-p_{rr})^2}",

@@ -1,0 +1,44 @@
+//! Check your own estimator: write it between the lines below, and run
+//!
+//! ```sh
+//! cargo run --release --example check_mine
+//! ```
+//!
+//! It is tried on several problems of known truth. You are told the ratio of its mean to the truth on each, and which classic
+//! mistakes that is consistent with. As it stands the file holds one of them.
+//!
+//! A number worked out by hand is judged by `-- --question 1.2 --answer 0.602`, and draws from a program in any language by
+//! `-- --question 3.5 --draws-from -`, one a line on standard input.
+
+use std::process::ExitCode;
+
+use rand::distr::Distribution;
+use unbiased::check::Attempt;
+use unbiased::hemisphere::Hemisphere;
+use unbiased::workbook;
+
+/// The question that your estimator answers.
+const QUESTION: &str = "3.5";
+
+// ─────────────────────────────── your estimator ───────────────────────────────
+//
+// 1.1  Attempt::exponential(|rate, rng| …)               one sample
+// 2.1  Attempt::rectangle(|f, rectangle, rng| …)         one draw of ∫∫ f
+// 3.4  Attempt::hemisphere(|light, albedo, rng| …)       one draw of the reflected radiance (3.5, too)
+// 5.1  Attempt::bounces(|p_rr, rng| …)                   one number of bounces
+// 5    Attempt::roulette(|x, p_rr, rng| …)               one X_rr, where x(rng) draws X
+//
+// rng.uniform() is a uniform number in [0, 1).
+
+fn mine() -> Attempt<'static> {
+    Attempt::hemisphere(|light, albedo, rng| {
+        let direction = Hemisphere::Uniform.sample(rng);
+        albedo * light(&direction)
+    })
+}
+
+// ──────────────────────────────────────────────────────────────────────────────
+
+fn main() -> ExitCode {
+    workbook::check_mine(QUESTION, &mine())
+}

@@ -1,0 +1,150 @@
+//! The reader's door: one's own estimator, or a number worked out by hand, judged.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Write};
+use std::process::ExitCode;
+
+use lexopt::{Arg, Parser};
+
+use super::{ended, options, print};
+use crate::check::{self, Attempt, Measurement, Probe, Topic};
+use crate::error::{Error, Result};
+use crate::estimate::Estimate;
+
+/// The `main` of an example that checks the reader's own estimator, written for a worksheet question.
+///
+/// Without options it tries the estimator on all probes of its topic, and says what the ratios to the truth are and which classic mistakes they are consistent with.
+/// `--question Q --answer TEXT` judges a number worked out by hand, and `--question Q --draws-from FILE` draws made by any other program, one a line (`-` for standard input).
+pub fn check_mine(question: &str, mine: &Attempt<'_>) -> ExitCode {
+    ended(Wish::read(question).and_then(|wish| wish.grant(mine)))
+}
+
+/// What the command line asks for.
+struct Wish {
+    question: String,
+    answer: Option<String>,
+    draws_from: Option<String>,
+    probe: usize,
+    draws: u64,
+    seed: u64,
+    help: bool,
+}
+
+impl Wish {
+    fn read(question: &str) -> Result<Self> {
+        let mut wish = Self {
+            question: question.into(),
+            answer: None,
+            draws_from: None,
+            probe: 1,
+            draws: 1_000_000,
+            seed: 1,
+            help: false,
+        };
+        let mut line = Parser::from_env();
+        while let Some(argument) = line.next().map_err(options::usage)? {
+            match argument {
+                Arg::Short('h') | Arg::Long("help") => wish.help = true,
+                Arg::Long("question") => wish.question = options::text(&mut line, "--question")?,
+                Arg::Long("answer") => wish.answer = Some(options::text(&mut line, "--answer")?),
+                Arg::Long("draws-from") => wish.draws_from = Some(options::text(&mut line, "--draws-from")?),
+                Arg::Long("probe") => wish.probe = options::count(&mut line, "--probe")? as usize,
+                Arg::Long("draws") => wish.draws = options::count(&mut line, "--draws")?,
+                Arg::Long("seed") => wish.seed = options::whole(&mut line, "--seed")?,
+                other => return Err(options::usage(other.unexpected())),
+            }
+        }
+        Ok(wish)
+    }
+
+    fn grant(&self, mine: &Attempt<'_>) -> Result<()> {
+        let said = if self.help {
+            HELP.to_owned()
+        } else if let Some(answer) = &self.answer {
+            format!("{}: {}", self.question, check::judge_answer(&self.question, answer)?)
+        } else if let Some(file) = &self.draws_from {
+            self.judge_draws(file)?
+        } else {
+            self.judge_mine(mine)?
+        };
+        writeln!(io::stdout(), "{said}").or_else(print::until_the_pipe_closes)
+    }
+
+    fn topic(&self) -> Result<Topic> {
+        Topic::of_question(&self.question)
+            .ok_or_else(|| Error::Usage(format!("question {} has no estimator to check", self.question)))
+    }
+
+    fn judge_mine(&self, mine: &Attempt<'_>) -> Result<String> {
+        let (asked, given) = (self.topic()?, mine.topic());
+        if asked != given {
+            let question = &self.question;
+            return Err(Error::Usage(format!(
+                "question {question} is about “{asked}”, the estimator written here about “{given}”"
+            )));
+        }
+        let diagnosis = check::diagnose(&check::measure(mine, self.draws, self.seed)?)?;
+        Ok(format!(
+            "Question {}, {} draws a probe, seed {}.\n{diagnosis}",
+            self.question, self.draws, self.seed
+        ))
+    }
+
+    fn judge_draws(&self, file: &str) -> Result<String> {
+        let probes = self.topic()?.probes();
+        let Some(probe) = probes.get(self.probe - 1) else {
+            return Err(Error::Usage(format!("--probe is 1 to {} for this question", probes.len())));
+        };
+        let estimate = if file == "-" {
+            read_draws(io::stdin().lock())
+        } else {
+            let unread = |error: io::Error| Error::Usage(format!("{file} could not be read: {error}"));
+            read_draws(BufReader::new(File::open(file).map_err(unread)?))
+        }?;
+        let diagnosis = check::diagnose(&[Measurement { probe: *probe, estimate }])?;
+        let others: Vec<String> = probes.iter().enumerate().map(|(i, probe)| described(i, probe)).collect();
+        Ok(format!(
+            "Taken as {} draws for probe {}, whose truth is {}.\n{diagnosis}\nProbes of this question (--probe):\n{}",
+            estimate.draws(),
+            self.probe,
+            print::shortened(probe.truth()),
+            others.join("\n"),
+        ))
+    }
+}
+
+fn described(index: usize, probe: &Probe) -> String {
+    format!("  {}. {probe}: the truth is {}", index + 1, print::shortened(probe.truth()))
+}
+
+/// Numbers, one a line; empty lines are passed over.
+fn read_draws(lines: impl BufRead) -> Result<Estimate> {
+    let mut estimate = Estimate::new();
+    for (index, line) in lines.lines().enumerate() {
+        let line = line.map_err(|error| Error::Usage(format!("the draws could not be read: {error}")))?;
+        let word = line.trim();
+        if word.is_empty() {
+            continue;
+        }
+        match word.parse::<f64>() {
+            Ok(draw) if draw.is_finite() => estimate.push(draw),
+            _ => return Err(Error::Usage(format!("line {} is no draw: \"{word}\"", index + 1))),
+        }
+    }
+    Ok(estimate)
+}
+
+const HELP: &str =
+    "Checks your own estimator, written in examples/check_mine.rs, or a number worked out by hand.
+
+    cargo run --release --example check_mine
+    cargo run --release --example check_mine -- --question 1.2 --answer 0.602
+    python my_estimator.py | cargo run --release --example check_mine -- --question 3.5 --draws-from -
+
+Options
+    --question Q         the worksheet's number (default: the one in the file)
+    --answer TEXT        judge this number, fraction or expression: 1.386, 16/125, 2ρ/π
+    --draws-from FILE    judge these draws, one a line (- for standard input), made for --probe
+    --probe N            which of the question's probes the draws were made for (1)
+    --draws N            draws of your estimator on each probe (1000000)
+    --seed S             their seed (1)";
