@@ -469,7 +469,7 @@ fn draws_of_any_program_are_judged_from_standard_input() {
     assert!(code == Some(0) && said.contains("Nothing wrong seen"), "{said}");
     let (_, said) = check_mine(&arguments, &samples(&|u| -(1.0 - u).log10() / 0.37));
     assert!(said.contains("1. log base 10"), "{said}");
-    let (_, said) = check_mine(&arguments, &samples(&|u| -0.62 * (1.0 - u).ln() / 0.37));
+    let (_, said) = check_mine(&arguments, &samples(&|u| -0.8 * (1.0 - u).ln() / 0.37));
     assert!(said.contains("none of the known mistakes"), "{said}");
 }
 
