@@ -15,7 +15,8 @@ use std::f64::consts::{FRAC_1_PI, FRAC_1_SQRT_2, PI, TAU};
 use proptest::prelude::*;
 use rand::distr::Distribution;
 use unbiased::check::{
-    self, Attempt, Finding, Judgement, Mistake, Probe, Sky, Statistic, Surface, Topic, Unbiased, Verdict,
+    self, Attempt, Diagnosis, Finding, Judgement, Mistake, Probe, Sky, Statistic, Surface, Topic, Unbiased,
+    Verdict,
 };
 use unbiased::hemisphere::Hemisphere;
 use unbiased::inversion::Exponential;
@@ -497,6 +498,58 @@ fn more_probes_leave_fewer_candidates() {
     assert!(all <= 3.0 && alone >= 2.0 * all);
 }
 
+/// Few draws leave several groups: the best is first, and each is inside the region of 1 − 1e-4, for χ² with five degrees of freedom 25.745.
+#[test]
+fn candidates_come_best_first() {
+    let mut several = 0;
+    for (index, mistake) in Topic::Hemisphere.mistakes().iter().enumerate() {
+        let measured = check::measure(mistake.wrong(), 60, common::seed(6000 + index as u64)).unwrap();
+        let diagnosis = check::diagnose(&measured).unwrap();
+        let chi_squares: Vec<_> = diagnosis.groups().iter().map(|group| group.chi_square).collect();
+        assert!(
+            chi_squares.is_sorted() && chi_squares.iter().all(|chi_square| *chi_square <= 25.75),
+            "{chi_squares:?}"
+        );
+        several += usize::from(chi_squares.len() > 1);
+        for group in diagnosis.groups() {
+            let of = |measurement: &check::Measurement| {
+                let (ratio, error) = measurement.ratio();
+                ((ratio - group.mistakes[0].ratio(&measurement.probe)) / error.hypot(1e-6)).powi(2)
+            };
+            let sum: f64 = measured.iter().map(of).sum();
+            assert!((sum - group.chi_square).abs() <= 1e-3 * (1.0 + sum), "{sum} {}", group.chi_square);
+        }
+    }
+    assert!(several >= 5, "{several}");
+}
+
+/// Where all bounces are asked for and none is dimmed the draws have no mean, which is not what a finite one looks like.
+#[test]
+fn draws_without_a_mean_are_told_from_those_with_one() {
+    let (all, some): (Vec<_>, Vec<_>) =
+        Topic::Furnace.probes().iter().copied().partition(|probe| probe.to_string().contains("all"));
+    let diagnosis = |wrong: &str, probes: &[Probe]| {
+        let attempt = mistake(Topic::Furnace, wrong).wrong();
+        let measured = check::measure_on(attempt, probes, DRAWS, common::seed(7000)).unwrap();
+        check::diagnose(&measured).unwrap()
+    };
+    let names = |diagnosis: &Diagnosis| diagnosis.candidates().map(Mistake::name).collect::<Vec<_>>();
+    assert_eq!(
+        names(&diagnosis("the throughput never multiplied", &all)),
+        ["the throughput never multiplied"]
+    );
+    // an error bar of a third: nothing can be said, and nothing is
+    let unclear = diagnosis("the albedo forgotten", &all);
+    assert_eq!(unclear.finding(), Finding::Unclear);
+    assert!(unclear.hidden().any(|mistake| mistake.name() == "the albedo forgotten"), "{unclear}");
+    assert!(unclear.to_string().starts_with("Too uncertain to say"), "{unclear}");
+    // without roulette the two are one
+    assert_eq!(
+        names(&diagnosis("the albedo forgotten", &some)),
+        ["the throughput never multiplied", "the albedo forgotten"]
+    );
+}
+
 #[test]
 fn an_unknown_mistake_is_called_unknown() {
     let attempts = [
@@ -678,6 +731,8 @@ fn wrong_answers_are_named() {
         ("1.2", "0.472", "looks like: p read at x = 0.75 instead of F inverted"),
         ("1.2", "-1.386", "looks like: the sign forgotten"),
         ("1.2", "1.41", "not right, and none of the known slips: 1.0171 times the answer"),
+        ("1.2", "1.387", "not right, and none of the known slips: 1.0005 times the answer"),
+        ("5.1(ii)", "0.129", "not right, and none of the known slips: 1.0078 times the answer"),
         ("1.2", "1", "not right, and none of the known slips: 0.7213 times the answer"),
         ("2.1", "1/16", "looks like: multiplied by p instead of divided"),
         ("5.1(i)", "4/5", "looks like: the chance of going on, not of ending"),

@@ -53,6 +53,9 @@ const REGION: f64 = 1e-4;
 /// The probability with which a right estimator may be taken for a wrong one.
 const FALSE_ALARM: f64 = 1e-9;
 
+/// With a larger std error than this, relative to the truth, being consistent with it means nothing.
+const COARSE: f64 = 0.1;
+
 /// Tries an attempt on all probes of its topic, `draws` draws each.
 ///
 /// # Errors
@@ -148,8 +151,9 @@ pub fn diagnose(measurements: &[Measurement]) -> Result<Diagnosis> {
                 .sort_by(|a, b| strangeness(a, measurements).total_cmp(&strangeness(b, measurements)));
         }
     }
+    let precise = measurements.iter().all(|measurement| measurement.ratio().1 <= COARSE);
     let finding = if right <= region(measurements.len(), FALSE_ALARM) {
-        Finding::NothingWrong
+        if precise { Finding::NothingWrong } else { Finding::Unclear }
     } else if groups.is_empty() {
         Finding::Unknown
     } else {
@@ -184,6 +188,8 @@ fn strangeness(mistake: &Mistake, measurements: &[Measurement]) -> f64 {
 pub enum Finding {
     /// All ratios are consistent with a right estimator's.
     NothingWrong,
+    /// The same, but some std error is above a tenth of the truth: too few draws, or draws of infinite variance.
+    Unclear,
     /// Wrong, and consistent with at least one classic mistake.
     Known,
     /// Wrong, and consistent with none of the classic mistakes.
@@ -240,9 +246,10 @@ impl Diagnosis {
         self.groups().iter().flat_map(|group| group.mistakes.iter().copied())
     }
 
-    /// Where nothing seems wrong: the mistakes that these probes and this many draws could not see.
+    /// Where nothing seems wrong, or all is unclear: the mistakes that these probes and this many draws could not see.
     pub fn hidden(&self) -> impl Iterator<Item = &'static Mistake> + '_ {
-        let groups = if self.finding == Finding::NothingWrong { &self.groups[..] } else { &[] };
+        let unseen = matches!(self.finding, Finding::NothingWrong | Finding::Unclear);
+        let groups = if unseen { &self.groups[..] } else { &[] };
         groups.iter().flat_map(|group| group.mistakes.iter().copied())
     }
 }
@@ -254,6 +261,10 @@ impl fmt::Display for Diagnosis {
             Finding::NothingWrong => {
                 write!(f, "Nothing wrong seen: all ratios to the truth are consistent with 1.")?
             }
+            Finding::Unclear => write!(
+                f,
+                "Too uncertain to say: a std error is above a tenth of the truth. Take more draws; if it does not fall, the variance is infinite."
+            )?,
             Finding::Known => write!(f, "Not right. The ratios to the truth are consistent with:")?,
             Finding::Unknown => write!(f, "Not right, and none of the known mistakes.")?,
         }
