@@ -110,7 +110,7 @@ impl Figure {
         pixels.encode_png().map_err(|error| failed(error.to_string()))
     }
 
-    /// The picture as a PDF page of its own size.
+    /// The picture as a PDF page of its own size. Its bytes may differ between runs, what it shows does not.
     ///
     /// # Errors
     /// If the picture cannot be converted.
