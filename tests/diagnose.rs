@@ -538,16 +538,28 @@ fn draws_without_a_mean_are_told_from_those_with_one() {
         names(&diagnosis("the throughput never multiplied", &all)),
         ["the throughput never multiplied"]
     );
-    // an error bar of a third: nothing can be said, and nothing is
-    let unclear = diagnosis("the albedo forgotten", &all);
-    assert_eq!(unclear.finding(), Finding::Unclear);
-    assert!(unclear.hidden().any(|mistake| mistake.name() == "the albedo forgotten"), "{unclear}");
-    assert!(unclear.to_string().starts_with("Too uncertain to say"), "{unclear}");
+    // its error bar is what chance makes of it: it is listed, or nothing is said
+    let without_mean = diagnosis("the albedo forgotten", &all);
+    let mut listed = without_mean.candidates().chain(without_mean.hidden());
+    assert!(listed.any(|mistake| mistake.name() == "the albedo forgotten"), "{without_mean}");
+    assert_ne!(without_mean.finding(), Finding::NothingWrong);
     // without roulette the two are one
     assert_eq!(
         names(&diagnosis("the albedo forgotten", &some)),
         ["the throughput never multiplied", "the albedo forgotten"]
     );
+}
+
+/// Two draws, of 0 and twice the truth: an error bar as large as the truth excludes little, and nothing is said.
+#[test]
+fn large_errors_are_called_unclear() {
+    let probe = Topic::Hemisphere.probes()[0];
+    let estimate = unbiased::Estimate::from_draws(&[0.0, 2.0 * probe.truth()]);
+    let diagnosis = check::diagnose(&[check::Measurement { probe, estimate }]).unwrap();
+    assert_eq!(diagnosis.finding(), Finding::Unclear);
+    assert_eq!(diagnosis.candidates().count(), 0);
+    assert!(diagnosis.hidden().count() > 10);
+    assert!(diagnosis.to_string().starts_with("Too uncertain to say: "), "{diagnosis}");
 }
 
 #[test]
