@@ -349,3 +349,24 @@ fn reports_are_sentences() {
     assert!(agreement.to_string().starts_with("distributed not as claimed"), "{agreement}");
     assert!(agreement.to_string().contains("not seen:"));
 }
+
+/// What quadrature finds hard: a kink or a jump close beside a point where pieces meet, an inner integral that cancels, and draws that vary by rounding alone.
+#[test]
+fn quadrature_sees_jumps_beside_its_own_seams_and_stops_at_rounding() {
+    for jump in [0.5 + 1e-4, 0.5 - 1e-7, 0.75 + 1e-10, 1e-3, 1.0 - 1e-5] {
+        let step = exactly(&from_fn(move |rng| if rng.uniform() < jump { 3.0 } else { 1.0 }), 1).unwrap();
+        assert!((step.mean - (1.0 + 2.0 * jump)).abs() <= 1e-9, "{jump}: {}", step.mean);
+        let kink = exactly(&from_fn(move |rng| rng.uniform().min(jump)), 1).unwrap();
+        assert!((kink.mean - jump * (1.0 - 0.5 * jump)).abs() <= 1e-9, "{jump}: {}", kink.mean);
+    }
+    let cancels =
+        exactly(&from_fn(|rng| (4.0 * rng.uniform() - 2.0) * (4.0 * rng.uniform() - 2.0)), 2).unwrap();
+    assert!(cancels.mean.abs() <= 1e-12 && (cancels.variance - 16.0 / 9.0).abs() <= 1e-9, "{cancels:?}");
+    let constant = exactly(&ratio(|w: &Direction| 0.61 * w.cos_theta(), Hemisphere::Cosine), 2).unwrap();
+    assert!(
+        (constant.mean - 0.61 * std::f64::consts::PI).abs() <= 1e-12 && constant.variance == 0.0,
+        "{constant:?}"
+    );
+    let aslant = from_fn(|rng| if rng.uniform() + rng.uniform() * rng.uniform() < 0.7 { 1.0 } else { 0.0 });
+    assert!(exactly(&aslant, 3).unwrap_err().to_string().contains("aslant"));
+}

@@ -527,16 +527,7 @@ impl Mistake {
     /// The mean and variance of its draws on a probe by quadrature of the wrong estimator itself, where a draw takes at most 3 random numbers.
     pub fn exactly(&self, probe: &Probe) -> Option<Exact> {
         let estimator = self.wrong.at(probe).ok()?;
-        // of draws that differ by rounding alone quadrature would look for the shape in vain
-        let typical = estimator.draw(&mut Stream::scripted(&[0.3; 3]));
-        // so it would where positive and negative draws cancel along a line
-        let shift = typical.abs().max(probe.unit().abs());
-        let snapped = from_fn(|rng| {
-            let draw = estimator.draw(rng);
-            shift + if (draw - typical).abs() <= 1e-13 * shift { typical } else { draw }
-        });
-        let shifted = exactly(&snapped, self.random_numbers()?).ok()?;
-        Some(Exact { mean: shifted.mean - shift, ..shifted })
+        exactly(&estimator, self.random_numbers()?).ok()
     }
 }
 
