@@ -23,6 +23,9 @@ const FAINT: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
 /// plotters has no dashes: a line's opacity, one of these, says which it gets once the SVG is written.
 const DASHES: [(f64, &str); 3] = [(0.991, "75 30"), (0.992, "90 30 15 30"), (0.993, "15 25")];
 
+/// The share of ink in a cell of shade ±1: black text on it still reads.
+const DEEPEST: f64 = 0.7;
+
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 pub(super) fn svg(plot: &Plot, name: &str) -> Result<String> {
@@ -234,6 +237,21 @@ fn draw_item(item: &Item, frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
                 area.draw(&Rectangle::new(corners, colour(*ink).mix(0.45).filled()))?;
             }
         }
+        Item::Cells { row, points, texts, .. } => {
+            for (&[x, _, shade], text) in points.iter().zip(texts) {
+                let corners = [frame.at([x - 0.5, row - 0.5]), frame.at([x + 0.5, row + 0.5])];
+                let ink = if shade < 0.0 { Ink::Blue } else { Ink::Vermilion };
+                let fill = tint(ink, DEEPEST * shade.abs().min(1.0));
+                area.draw(&Rectangle::new(corners, fill.filled()))?;
+                area.draw(&Rectangle::new(corners, FAINT.stroke_width((0.4 * PT) as u32)))?;
+                let middle = frame.at([x, *row]);
+                area.draw(&Text::new(
+                    text.clone(),
+                    middle,
+                    font(8.0, &INK, HPos::Center, VPos::Center),
+                ))?;
+            }
+        }
         Item::Shade { .. } => {}
         Item::Arrow { ink, from, to } => draw_arrow(frame.at(*from), frame.at(*to), *ink, area)?,
         Item::Text { ink, at, side, text } => {
@@ -297,6 +315,13 @@ fn colour(ink: Ink) -> RGBColor {
         Ink::Black => INK,
         Ink::Grey => GREY,
     }
+}
+
+/// A colour with this share of ink on white.
+fn tint(ink: Ink, share: f64) -> RGBColor {
+    let RGBColor(r, g, b) = colour(ink);
+    let mixed = |c: u8| (255.0 + share * (f64::from(c) - 255.0)).round() as u8;
+    RGBColor(mixed(r), mixed(g), mixed(b))
 }
 
 /// The colour for text, dark enough to read on white.
