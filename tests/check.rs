@@ -95,10 +95,17 @@ fn a_trace_ends_as_the_report_says() {
             });
             let verdicts: Vec<_> = verdicts.collect();
             let (last, before) = verdicts.split_last().unwrap();
-            assert!(before.iter().all(|verdict| *verdict == (false, false)), "section {section}, bias {bias}");
+            assert!(
+                before.iter().all(|verdict| *verdict == (false, false)),
+                "section {section}, bias {bias}"
+            );
             let expected = if bias == 0.0 { Verdict::Unbiased } else { Verdict::Biased };
             assert_eq!(report.verdict, expected, "section {section}: {report}");
-            assert_eq!((last.0, last.1 && !last.0), (bias != 0.0, bias == 0.0), "section {section}, bias {bias}");
+            assert_eq!(
+                (last.0, last.1 && !last.0),
+                (bias != 0.0, bias == 0.0),
+                "section {section}, bias {bias}"
+            );
             assert_eq!(looks.last().unwrap().draws, report.estimate.draws());
             let mut draws = 0;
             for look in &looks {

@@ -35,13 +35,12 @@ pub fn wealth(seed: u64) -> Result<Figure> {
     let most = right_draws.max(off_draws);
     let end = 10f64.powf(most.log10().ceil()).max(1e6);
     let along = || Axis::log("draws", 100.0, end);
-    let powers = |name: &str, low: i32, high: i32| {
-        Axis::linear(name, f64::from(low), f64::from(high)).with_ticks(
-            (low..=high).filter(|power| power % 3 == 0).map(|power| (f64::from(power), power_of_ten(power))),
-        )
+    let wealth_axis = || {
+        let powers = (-3..=21).step_by(3).map(|power| (f64::from(power), power_of_ten(power)));
+        Axis::linear("wealth (1 at the start)", -4.0, 21.0).with_ticks(powers)
     };
 
-    let mut against = Panel::new("Bets against the truth", along(), powers("wealth (1 at the start)", -4, 15));
+    let mut against = Panel::new("Bets against the truth", along(), wealth_axis());
     against.level("1/α", Ink::Black, 12.0);
     let path = |looks: &[Look], wealth: fn(&Look) -> f64| {
         thinned(looks).map(|look| [look.draws as f64, wealth(look) / LN_10]).collect::<Vec<_>>()
@@ -54,33 +53,30 @@ pub fn wealth(seed: u64) -> Result<Figure> {
     ] {
         let points = path(looks, truth_bets);
         let last = points.last().copied();
-        against.line(series, ink, points).marks(series, ink, Marker::Disc, last);
+        against.line(series, ink, points).marks(&format!("{series}: verdict"), ink, Marker::Disc, last);
     }
+    let classic_label = 1.4 * classic_draws;
     against
-        .text(Ink::Black, [100.0, 13.9], Side::Right, "1/α: biased, wrong with")
-        .text(Ink::Black, [100.0, 12.8], Side::Right, "probability 10⁻¹² at most")
-        .text(Ink::Vermilion, [1.4 * classic_draws, 8.6], Side::Right, "uniform directions,")
-        .text(Ink::Vermilion, [1.4 * classic_draws, 7.5], Side::Right, "cosine weight: refuted")
-        .text(Ink::Vermilion, [1.4 * classic_draws, 6.4], Side::Right, &format!("after {classic_draws} draws"))
-        .text(Ink::Green, [0.75 * off_draws, 4.4], Side::Left, "1 % too large: refuted")
-        .text(Ink::Green, [0.75 * off_draws, 3.3], Side::Left, &format!("after {off_draws} draws"))
-        .text(Ink::Blue, [150.0, -3.0], Side::Right, "right: never");
+        .text(Ink::Black, [classic_label, 14.3], Side::Right, "1/α: biased, wrong with")
+        .text(Ink::Black, [classic_label, 13.0], Side::Right, "probability 10⁻¹² at most")
+        .text(Ink::Vermilion, [classic_label, 10.6], Side::Right, "uniform directions,")
+        .text(Ink::Vermilion, [classic_label, 9.3], Side::Right, "cosine weight: refuted")
+        .text(Ink::Vermilion, [classic_label, 8.0], Side::Right, &format!("after {classic_draws} draws"))
+        .text(Ink::Green, [0.2 * off_draws, 5.2], Side::Left, "1 % too large: refuted")
+        .text(Ink::Green, [0.2 * off_draws, 3.9], Side::Left, &format!("after {off_draws} draws"))
+        .text(Ink::Blue, [220.0, -1.9], Side::Right, "right: never refuted");
 
-    let mut certificate = Panel::new(
-        "Certifying the right estimator",
-        along(),
-        powers("wealth (1 at the start)", -4, 15),
-    );
+    let mut certificate = Panel::new("Certifying the right estimator", along(), wealth_axis());
     certificate
         .level("1/β", Ink::Black, 6.0)
         .line("bets against 0.5 % less", Ink::Blue, path(&right_looks, |look| look.against_too_low))
         .line("bets against 0.5 % more", Ink::Purple, path(&right_looks, |look| look.against_too_high))
-        .text(Ink::Black, [100.0, 13.9], Side::Right, "1/β: once both have passed it, unbiased")
-        .text(Ink::Black, [100.0, 12.8], Side::Right, "within 0.5 %; each is wrong with")
-        .text(Ink::Black, [100.0, 11.7], Side::Right, "probability 10⁻⁶ at most")
-        .text(Ink::Black, [100.0, 10.6], Side::Right, &format!("here after {right_draws} draws"))
-        .text(Ink::Blue, [150.0, 4.4], Side::Right, "solid: against 0.5 % less")
-        .text(Ink::Purple, [150.0, 3.3], Side::Right, "dotted: against 0.5 % more");
+        .text(Ink::Black, [100.0, 11.4], Side::Right, "1/β: unbiased within 0.5 %")
+        .text(Ink::Black, [100.0, 10.1], Side::Right, "once both have passed it; each")
+        .text(Ink::Black, [100.0, 8.8], Side::Right, "wrong with probability 10⁻⁶")
+        .text(Ink::Black, [100.0, 7.5], Side::Right, &format!("at most; here {right_draws} draws"))
+        .text(Ink::Blue, [220.0, 4.2], Side::Right, "solid: against 0.5 % less")
+        .text(Ink::Purple, [220.0, 2.9], Side::Right, "dotted: against 0.5 % more");
 
     Plot {
         name: "check_wealth",
@@ -133,8 +129,9 @@ pub fn mistakes(topic: Topic) -> Result<Figure> {
     let names: Vec<String> = probes.iter().map(ToString::to_string).collect();
     let tail = names.first().and_then(|name| name.rsplit_once(", ")).map(|(_, tail)| format!(", {tail}"));
     let tail = tail.filter(|tail| names.iter().all(|name| name.ends_with(tail.as_str()))).unwrap_or_default();
+    let most = 50 / probes.len().max(1);
     let heads: Vec<Vec<String>> =
-        names.iter().map(|name| wrapped(name.strip_suffix(tail.as_str()).unwrap_or(name))).collect();
+        names.iter().map(|name| wrapped(name.strip_suffix(tail.as_str()).unwrap_or(name), most)).collect();
     let lines = heads.iter().map(Vec::len).max().unwrap_or(0);
 
     let rows = mistakes.len() as f64;
@@ -143,7 +140,7 @@ pub fn mistakes(topic: Topic) -> Result<Figure> {
     let down = mistakes.iter().enumerate().map(|(index, mistake)| (bottom_up(index), mistake.name()));
     let across = Axis::linear("blue: too little, vermilion: too much", 0.5, probes.len() as f64 + 0.5);
     let mut panel = Panel::new(
-        &format!("Mean of the draws ÷ truth{tail}"),
+        &format!("Mean ÷ truth{tail}"),
         across.with_ticks::<&str>([]),
         Axis::linear("mistake", -0.5, rows - 0.5 + head).with_ticks(down),
     );
@@ -204,7 +201,7 @@ fn told(mistake: &Mistake, probe: &Probe) -> String {
         f64::INFINITY => "∞".into(),
         0.0 => "0".into(),
         // what would look right shows how far it is off
-        size if (size - 1.0).abs() < 5e-3 => format!("1{:+.0e}", size - 1.0),
+        _ if (ratio - 1.0).abs() < 5e-3 && probe.right_ratio() == 1.0 => format!("1{:+.0e}", ratio - 1.0),
         size if size < 0.1 => format!("{size:.3}"),
         size if size < 10.0 => format!("{size:.2}"),
         size => format!("{size:.1}"),
@@ -213,9 +210,8 @@ fn told(mistake: &Mistake, probe: &Probe) -> String {
     format!("{minus}{}", text.trim_start_matches('-').replace('-', "−"))
 }
 
-/// A probe's name in lines of about seven characters, broken at spaces outside of brackets and before a ×.
-fn wrapped(name: &str) -> Vec<String> {
-    const MOST: usize = 7;
+/// A probe's name in lines of up to `most` characters where that is possible, broken at spaces outside of brackets and after a ×.
+fn wrapped(name: &str, most: usize) -> Vec<String> {
     let mut depth = 0i32;
     let mut words = vec![String::new()];
     for c in name.chars() {
@@ -224,24 +220,25 @@ fn wrapped(name: &str) -> Vec<String> {
             ']' => -1,
             _ => 0,
         };
+        if let Some(word) = words.last_mut().filter(|_| c != ' ') {
+            word.push(if c == '-' { '−' } else { c });
+        }
         if c == ' ' && depth == 0 || c == '×' {
             words.push(String::new());
-        }
-        if let Some(word) = words.last_mut().filter(|_| c != ' ' || depth > 0) {
-            word.push(c);
         }
     }
     let mut lines: Vec<String> = Vec::new();
     for word in words {
         match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= MOST => {
+            Some(line) if line.chars().count() + 1 + word.trim_end_matches(',').chars().count() <= most => {
                 line.push(' ');
                 line.push_str(&word);
             }
             _ => lines.push(word),
         }
     }
-    lines.into_iter().map(|line| line.replace('-', "−")).collect()
+    // where a line ends it needs no comma
+    lines.into_iter().map(|line| line.trim_end_matches(',').to_string()).collect()
 }
 
 #[cfg(test)]
@@ -250,8 +247,8 @@ mod tests {
 
     #[test]
     fn names_are_broken_between_words() {
-        assert_eq!(wrapped("L = 2 in half the sky"), ["L = 2", "in half", "the sky"]);
-        assert_eq!(wrapped("f = xy on [-2, 2]×[0.3, 2]"), ["f = xy", "on", "[−2, 2]", "×[0.3, 2]"]);
+        assert_eq!(wrapped("L = 2 in half the sky", 7), ["L = 2", "in half", "the sky"]);
+        assert_eq!(wrapped("f = xy on [-2, 2]×[0.3, 2]", 9), ["f = xy on", "[−2,2]×", "[0.3,2]"]);
     }
 
     #[test]
