@@ -5,6 +5,7 @@
 use std::process::ExitCode;
 
 use rand::distr::Distribution;
+use unbiased::check::Topic;
 use unbiased::hemisphere::{Direction, Hemisphere};
 use unbiased::lambertian::{CosinePower, Lambertian, Light};
 use unbiased::workbook::{self, Answer, Options};
@@ -36,7 +37,9 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
     Ok(vec![
         row("reflected radiance, general form")
             .outcome(&options.run(&general, 1_000_000)?)
-            .figure(figure::directions(Hemisphere::Cosine, 600, options.seed)?),
+            .figure(figure::directions(Hemisphere::Cosine, 600, options.seed)?)
+            .figure(figure::wealth(options.seed)?)
+            .figure(figure::mistakes(Topic::Hemisphere)?),
         row("reflected radiance, simplified").outcome(&options.run(&simplified, 1_000_000)?),
         row("the formula changed, the directions still uniform")
             .demonstration()

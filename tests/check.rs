@@ -77,6 +77,45 @@ fn right_estimators_are_certified_within_a_thousandth() {
     }
 }
 
+/// The trace is the run's own: it ends where the verdict falls, and no look before that justified one. (α, β: 2e-6 in all that a right
+/// estimator is refuted or a wrong one certified, for the seeds are fixed ones unless asked otherwise.)
+#[test]
+fn a_trace_ends_as_the_report_says() {
+    for section in SECTIONS {
+        for bias in [0.0, -0.1] {
+            let (estimator, ..) = right(section, bias);
+            let check = check_of(section, 2e-2).seed(common::seed(50));
+            let (report, looks) = check.trace(&estimator).unwrap();
+            assert_eq!(report, check.run(&estimator).unwrap());
+            let (refuted, certain) = (1e12f64.ln(), 1e6f64.ln());
+            let verdicts = looks.iter().scan((false, false), |(low, high), look| {
+                *low |= look.against_too_low >= certain * (1.0 - 1e-12);
+                *high |= look.against_too_high >= certain * (1.0 - 1e-12);
+                Some((look.against_truth >= refuted * (1.0 - 1e-12), *low && *high))
+            });
+            let verdicts: Vec<_> = verdicts.collect();
+            let (last, before) = verdicts.split_last().unwrap();
+            assert!(
+                before.iter().all(|verdict| *verdict == (false, false)),
+                "section {section}, bias {bias}"
+            );
+            let expected = if bias == 0.0 { Verdict::Unbiased } else { Verdict::Biased };
+            assert_eq!(report.verdict, expected, "section {section}: {report}");
+            assert_eq!(
+                (last.0, last.1 && !last.0),
+                (bias != 0.0, bias == 0.0),
+                "section {section}, bias {bias}"
+            );
+            assert_eq!(looks.last().unwrap().draws, report.estimate.draws());
+            let mut draws = 0;
+            for look in &looks {
+                assert!(look.draws > draws && look.draws - draws <= 256, "section {section}: {look:?}");
+                draws = look.draws;
+            }
+        }
+    }
+}
+
 /// A bias of one part in a thousand, planted in an estimator of each section, is refuted: β = 1e-6 bounds the chance that it is certified first.
 #[test]
 fn planted_biases_of_a_thousandth_are_refuted() {

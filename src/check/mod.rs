@@ -17,4 +17,4 @@ pub use mistakes::{
     Attempt, HandAnswer, Judgement, Mistake, Probe, Sky, Slip, Statistic, Surface, Topic, answers,
     judge_answer,
 };
-pub use unbiased::{Report, Unbiased, Verdict, unbiased};
+pub use unbiased::{Look, Report, Unbiased, Verdict, unbiased};

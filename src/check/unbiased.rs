@@ -81,6 +81,19 @@ pub struct Report {
     pub seed: u64,
 }
 
+/// The bettors' wealth after some of a check's draws, as natural logarithms: 0 at the start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Look {
+    /// The draws so far.
+    pub draws: u64,
+    /// ln of the mean wealth of the two who bet against the truth, upwards and downwards: *biased* once it reaches ln(1/α).
+    pub against_truth: f64,
+    /// ln of the wealth of who bets upwards against the truth less the tolerance: too low a mean is excluded once it reaches ln(1/β).
+    pub against_too_low: f64,
+    /// ln of the wealth of who bets downwards against the truth plus the tolerance; stays 0 where the range has no upper end.
+    pub against_too_high: f64,
+}
+
 impl Unbiased {
     /// Checks against the mean `truth`, for draws in `range`, with δ = 1e-3, α = 1e-12, β = 1e-6, seed 1 and at most 10⁹ draws.
     ///
@@ -162,6 +175,31 @@ impl Unbiased {
     /// # Errors
     /// If a draw is not finite, or leaves the range: the proof would be void. (By up to 1e-12 of the range it is rounding.)
     pub fn run(&self, estimator: &(impl Estimator + ?Sized)) -> Result<Report> {
+        self.watch(estimator, |_| ())
+    }
+
+    /// The same, with the bettors' wealth on the way: a look at least every 256 draws, the last one the verdict's.
+    ///
+    /// # Errors
+    /// Those of [`run`](Self::run).
+    ///
+    /// ```
+    /// use unbiased::{check::Unbiased, from_fn};
+    ///
+    /// let wrong = from_fn(|rng| 2.0 * rng.uniform().powi(2)); // E[3U²] = 1, the 3 taken for a 2
+    /// let (report, looks) = Unbiased::new(1.0, [0.0, 3.0])?.trace(&wrong)?;
+    /// let last = looks.last().unwrap();
+    /// assert_eq!(last.draws, report.estimate.draws());
+    /// assert!(last.against_truth >= 1e12f64.ln());
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    pub fn trace(&self, estimator: &(impl Estimator + ?Sized)) -> Result<(Report, Vec<Look>)> {
+        let mut looks = Vec::new();
+        let report = self.watch(estimator, |look| looks.push(look))?;
+        Ok((report, looks))
+    }
+
+    fn watch(&self, estimator: &(impl Estimator + ?Sized), mut each: impl FnMut(Look)) -> Result<Report> {
         let bettors = self.bettors();
         let mut wealths: [Wealth; 4] = Default::default();
         let (mut above, mut below) = (false, false);
@@ -181,6 +219,12 @@ impl Unbiased {
                     }
                     let [up, down, up_low, down_high] = wealths.each_ref().map(Wealth::log_mean);
                     let two_sided = up.max(down) + (0.5 + 0.5 * (-(up - down).abs()).exp()).ln();
+                    each(Look {
+                        draws: estimate.draws(),
+                        against_truth: two_sided,
+                        against_too_low: up_low,
+                        against_too_high: down_high,
+                    });
                     above |= up_low >= -self.beta.ln();
                     below |= self.high.is_finite() && down_high >= -self.beta.ln();
                     if two_sided >= -self.alpha.ln() {

@@ -4,6 +4,7 @@
 //! same bytes on every run. Where a question asks the student to mark or draw something there are two
 //! editions: [`Edition::Student`] has the same canvas and axes with nothing of the answer on it.
 
+mod check;
 mod inversion;
 mod lambertian;
 mod plot;
@@ -11,6 +12,7 @@ mod rectangle;
 mod render;
 mod roulette;
 
+pub use check::{mistakes, wealth};
 pub use inversion::{empirical_cdf, exponential, tails};
 pub use lambertian::{directions, integrand, variance_against_exponent, variance_against_ring};
 pub use rectangle::{running_means, sampling_errors};

@@ -23,6 +23,15 @@ const FAINT: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
 /// plotters has no dashes: a line's opacity, one of these, says which it gets once the SVG is written.
 const DASHES: [(f64, &str); 3] = [(0.991, "75 30"), (0.992, "90 30 15 30"), (0.993, "15 25")];
 
+/// The opacity that says of a text that it stands on a colour, where a white edge would be in the way.
+const ON_COLOUR: f64 = 0.994;
+
+/// A text's white edge.
+const EDGE: &str = " stroke=\"#FFFFFF\" stroke-width=\"24\" paint-order=\"stroke\"";
+
+/// The share of ink in a cell of shade ±1: black text on it still reads.
+const DEEPEST: f64 = 0.6;
+
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 pub(super) fn svg(plot: &Plot, name: &str) -> Result<String> {
@@ -134,7 +143,8 @@ fn draw_panel(panel: &Panel, area: &Area<'_>) -> Drawn {
     let widest = panel.y.ticks.iter().map(|(_, label)| label.chars().count()).max().unwrap_or(0) as f64;
     let frame = Frame {
         panel,
-        left: (14.0 + 5.4 * widest) * PT + 6.0 * PT,
+        // a few characters may all be wide ones, many are not
+        left: (20.0 + 5.4 * widest.min(8.0) + 4.4 * (widest - 8.0).max(0.0)) * PT,
         right: f64::from(width) - 8.0 * PT,
         top: 20.0 * PT,
         bottom: f64::from(height) - 30.0 * PT,
@@ -234,6 +244,21 @@ fn draw_item(item: &Item, frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
                 area.draw(&Rectangle::new(corners, colour(*ink).mix(0.45).filled()))?;
             }
         }
+        Item::Cells { row, points, texts, .. } => {
+            for (&[x, _, shade], text) in points.iter().zip(texts) {
+                let corners = [frame.at([x - 0.5, row - 0.5]), frame.at([x + 0.5, row + 0.5])];
+                let ink = if shade < 0.0 { Ink::Blue } else { Ink::Vermilion };
+                let fill = tint(ink, DEEPEST * shade.abs().min(1.0));
+                area.draw(&Rectangle::new(corners, fill.filled()))?;
+                area.draw(&Rectangle::new(corners, FAINT.stroke_width((0.4 * PT) as u32)))?;
+                let middle = frame.at([x, *row]);
+                area.draw(&Text::new(
+                    text.clone(),
+                    middle,
+                    font(8.0, &INK.mix(ON_COLOUR), HPos::Center, VPos::Center),
+                ))?;
+            }
+        }
         Item::Shade { .. } => {}
         Item::Arrow { ink, from, to } => draw_arrow(frame.at(*from), frame.at(*to), *ink, area)?,
         Item::Text { ink, at, side, text } => {
@@ -299,6 +324,13 @@ fn colour(ink: Ink) -> RGBColor {
     }
 }
 
+/// A colour with this share of ink on white.
+fn tint(ink: Ink, share: f64) -> RGBColor {
+    let RGBColor(r, g, b) = colour(ink);
+    let mixed = |c: u8| (255.0 + share * (f64::from(c) - 255.0)).round() as u8;
+    RGBColor(mixed(r), mixed(g), mixed(b))
+}
+
 /// The colour for text, dark enough to read on white.
 fn dark(ink: Ink) -> RGBColor {
     let RGBColor(r, g, b) = colour(ink);
@@ -318,7 +350,7 @@ fn stroke(ink: Ink) -> ShapeStyle {
     colour(ink).mix(opacity).stroke_width((width * PT) as u32)
 }
 
-fn font(points: f64, colour: &RGBColor, horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
+fn font(points: f64, colour: &impl Color, horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
     // plotters writes sizes divided by 1.24
     let size = points * PT * 1.24;
     FontDesc::new(FontFamily::SansSerif, size, FontStyle::Normal)
@@ -341,7 +373,8 @@ fn finish(plot: &Plot, name: &str, svg: &str) -> String {
     let mut body = body
         .replace(" opacity=\"1\"", "")
         .replace(" \"/>", "\"/>")
-        .replace("<text ", "<text stroke=\"#FFFFFF\" stroke-width=\"24\" paint-order=\"stroke\" ");
+        .replace("<text ", &format!("<text{EDGE} "));
+    body = without_edges_on_colour(&body);
     for (opacity, pattern) in DASHES {
         body = body.replace(&format!("opacity=\"{opacity}\""), &format!("stroke-dasharray=\"{pattern}\""));
     }
@@ -352,6 +385,15 @@ fn finish(plot: &Plot, name: &str, svg: &str) -> String {
         escape(&plot.title),
         escape(&plot.description),
     )
+}
+
+/// Takes the white edge from texts of the opacity [`ON_COLOUR`].
+fn without_edges_on_colour(body: &str) -> String {
+    let mark = format!(" opacity=\"{ON_COLOUR}\"");
+    let lines = body.split_inclusive('\n').map(|line| {
+        if line.contains(&mark) { line.replace(EDGE, "").replace(&mark, "") } else { line.to_string() }
+    });
+    lines.collect()
 }
 
 fn escape(text: &str) -> String {
