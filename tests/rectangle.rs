@@ -5,8 +5,6 @@
 //! with 1e-12. This file holds about 130 of the first and 22 of the second: less than 4e-10 in all, for fresh
 //! seeds; with the fixed ones, never. What a test can see is said beside it.
 
-#![allow(clippy::float_cmp)] // where == is used, the same number is meant
-
 mod common;
 
 use std::convert::Infallible;

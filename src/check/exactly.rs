@@ -7,7 +7,7 @@ use crate::stream::Stream;
 /// The exact moments of an estimator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Exact {
-    /// E[X]
+    /// E\[X\]
     pub mean: f64,
     /// Var X
     pub variance: f64,
@@ -153,7 +153,7 @@ fn nested_rule() -> Rule {
                 last * (2.0 * j as f64 * angle).cos() / (4 * j * j - 1) as f64
             })
             .sum();
-        (if k % n == 0 { 1.0 } else { 2.0 }) * (1.0 - sum) / n as f64
+        (if k.is_multiple_of(n) { 1.0 } else { 2.0 }) * (1.0 - sum) / n as f64
     };
     std::array::from_fn(|k| {
         let node = -(std::f64::consts::PI * k as f64 / 16.0).cos();
