@@ -3,7 +3,8 @@
 //! A test is a row of [`TABLE`]: so many cases certified to within a thousandth, so many to within a hundredth, each by the sequential test of
 //! `check::Unbiased`, which must say *unbiased*; *undecided* fails. A relative bias of 1e-3 (1e-2 where only coarse cases stand) is caught in every
 //! run but for two in 10⁶. Estimators of at most two random numbers are integrated as well, by `check::exactly`: to 1e-9, over far more parameters, with
-//! no noise and no false alarm.
+//! no noise and no false alarm. (Jumps are put at multiples of 2⁻ᵏ, where halving finds them: bisection does not look between a
+//! piece's end and its first node.)
 //!
 //! Draws must be bounded to be certified. X ≥ 0 without a bound is tested through F(X) and min(X, c), whose means are known; roulette's
 //! paths are bounded for q > ρ, by q/(q − ρ), go through min(X, c) at q = ρ, and for q < ρ through \[X > 0\], which sees the coins but not the weights:
@@ -51,9 +52,9 @@ const TABLE: [Row; 27] = [
     // section 1
     ("exponential_through_its_cdf", 1, 24, 0),
     ("exponential_cut_off", 1, 24, 0),
-    ("inversion_of_a_formula", 1, 12, 0),
-    ("inversion_of_library_cdfs", 0, 8, 0),
-    ("inversion_of_discrete_cdfs", 0, 6, 0),
+    ("inversion_of_a_formula", 0, 12, 0),
+    ("inversion_of_library_cdfs", 0, 4, 0),
+    ("inversion_of_discrete_cdfs", 0, 4, 0),
     ("samplers_of_section_1", 0, 0, 4 * 3),
     // section 2
     ("rectangle_independent", 1, 24, 0),
@@ -84,7 +85,7 @@ const TABLE: [Row; 27] = [
 /// False alarms of the other files with random tests, by their own account or, where they give only α, by the number of their tests.
 const OTHERS: [(&str, f64); 8] = [
     ("inversion", 6e-11),
-    ("rectangle", 4e-10),
+    ("rectangle", 3.6e-10),
     ("hemisphere", 3e-11),
     ("lambertian", 1e-10),
     ("roulette", 3e-10),
@@ -477,18 +478,23 @@ impl Sky {
     }
 }
 
+/// Sixty-fourths of a turn.
+fn turns() -> impl Strategy<Value = f64> + Clone {
+    (0..64u32).prop_map(|turn| f64::from(turn) / 32.0 * PI)
+}
+
 fn skies() -> impl Strategy<Value = Sky> + Clone {
     let parts = prop_oneof![
         3 => prop::array::uniform6(0.0..1.0),
         // one alone
         2 => (0..6usize, 0.1..10.0).prop_map(|(only, c)| std::array::from_fn(|i| if i == only { c } else { 0.0 })),
     ];
-    (parts, 0.0..6.0, 0.0..6.3).prop_map(|(parts, a, phi)| Sky { parts, a, phi })
+    (parts, 0.0..6.0, turns()).prop_map(|(parts, a, phi)| Sky { parts, a, phi })
 }
 
 /// Skies with all of their parts, which vary little.
 fn even_skies() -> impl Strategy<Value = Sky> + Clone {
-    (prop::array::uniform6(0.2..1.0), 0.0..6.0, 0.0..6.3).prop_map(|(parts, a, phi)| Sky { parts, a, phi })
+    (prop::array::uniform6(0.2..1.0), 0.0..6.0, turns()).prop_map(|(parts, a, phi)| Sky { parts, a, phi })
 }
 
 fn albedos() -> impl Strategy<Value = f64> + Clone {
@@ -577,12 +583,12 @@ fn samplers_of_section_3() {
 }
 
 proptest! {
-    #![proptest_config(common::config(24))]
+    #![proptest_config(common::config(6))]
 
     #[test]
-    fn lambertian_exactly(sky in skies(), albedo in albedos(), a in 0.0..12.0, width in 1e-2..1.0) {
+    fn lambertian_exactly(sky in skies(), albedo in albedos(), a in 0.0..12.0, width in 1..=64u32) {
+        let width = f64::from(width) / 64.0;
         let cube = Lambertian::new(albedo).unwrap();
-        // the half sky's edges jump across both axes' pieces: few skies, but all of their parts
         let light = |w: &Direction| sky.at(w);
         let (truth, scale) = (albedo * sky.mean(), albedo * sky.most());
         assert_exactly(&cube.cosine_estimator(light), 2, truth, None, scale);
@@ -735,7 +741,8 @@ proptest! {
 
     /// The coin is one number, X another: E X = 1, E X² = 9/5 for X = 3U².
     #[test]
-    fn roulette_exactly(p in log_range(1e-2, 1.0)) {
+    fn roulette_exactly(p in 1..=64u32) {
+        let p = f64::from(p) / 64.0;
         let x = from_fn(|rng| 3.0 * rng.uniform().powi(2));
         let variance = 9.0 / 5.0 / p - 1.0;
         assert_exactly(&Roulette::new(p).unwrap().wrap(x), 2, 1.0, Some(variance), 1.0 / p);
@@ -743,7 +750,8 @@ proptest! {
 
     /// min(N, c) by inversion is a staircase of one number.
     #[test]
-    fn bounces_by_inversion_exactly(p in 0.05..0.95, cut in 1..20i32) {
+    fn bounces_by_inversion_exactly(m in 1..4i32, cut in 1..8i32) {
+        let p = 0.5f64.powi(m);
         let n = Roulette::new(p).unwrap().bounces_by_inversion().unwrap();
         let mean: f64 = (1..=cut).map(|j| p.powi(j)).sum();
         // E min(N, c)² = Σ (2j − 1) P(N ≥ j)
