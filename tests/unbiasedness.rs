@@ -586,15 +586,9 @@ proptest! {
     #![proptest_config(common::config(6))]
 
     #[test]
-    fn lambertian_exactly(sky in skies(), albedo in albedos(), a in 0.0..12.0, width in 1..=64u32) {
-        let width = f64::from(width) / 64.0;
+    fn lambertian_exactly(albedo in albedos(), a in 0..12, width in 1..=64u32) {
+        let (a, width) = (f64::from(a), f64::from(width) / 64.0);
         let cube = Lambertian::new(albedo).unwrap();
-        let light = |w: &Direction| sky.at(w);
-        let (truth, scale) = (albedo * sky.mean(), albedo * sky.most());
-        assert_exactly(&cube.cosine_estimator(light), 2, truth, None, scale);
-        assert_exactly(&cube.uniform_estimator(light), 2, truth, None, scale);
-        assert_exactly(&cube.estimator(light, Hemisphere::Cosine), 2, truth, None, scale);
-        assert_exactly(&cube.estimator(light, Hemisphere::Uniform), 2, truth, None, scale);
         // mean and variance of the two lights that have both, from E cos^k θ
         let power = CosinePower::new(a).unwrap();
         let truth = 2.0 * albedo / (a + 2.0);
