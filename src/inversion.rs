@@ -251,8 +251,10 @@ fn not_falling((x, f_x): (f64, f64), (y, f_y): (f64, f64)) -> Result<()> {
 
 impl<F: Fn(f64) -> f64> Distribution<f64> for Inversion<F> {
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
+        // U = 0 stands for its cell [0, 2⁻⁵³) of the grid: the cell's middle keeps a support without a lower end from giving −∞
+        const MIDDLE: f64 = 0.5 / (1u64 << 53) as f64;
         let u: f64 = StandardUniform.sample(rng);
-        self.inverse_cdf(u).unwrap_or(f64::NAN)
+        self.inverse_cdf(u.max(MIDDLE)).unwrap_or(f64::NAN)
     }
 }
 

@@ -250,7 +250,8 @@ impl<'a> Run<'a> {
 
     fn pool(&self) -> Result<Option<rayon::ThreadPool>> {
         let Some(threads) = self.threads else { return Ok(None) };
-        require_count("the number of threads", threads as u64, threads > 0, "positive")?;
+        let ok = (1..=MOST_THREADS).contains(&threads);
+        require_count("the number of threads", threads as u64, ok, "from 1 to 1024")?;
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
@@ -326,6 +327,9 @@ impl<'a> Run<'a> {
         }
     }
 }
+
+/// More threads than any machine has cores for only bring it to its knees.
+const MOST_THREADS: usize = 1024;
 
 /// Blocks between two looks at the clock or the progress bar.
 const BATCH: u64 = 1024;

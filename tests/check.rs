@@ -45,7 +45,7 @@ fn check_of(section: usize, delta: f64) -> Unbiased {
     Unbiased::new(truth, range).unwrap().within(delta).unwrap()
 }
 
-/// 1,000 seeds an estimator at α = 0.05: the exact rate is below 0.02 (see the module's own test), so more than 0.05 has a probability below 1e-9.
+/// 1,000 pinned seeds an estimator at α = 0.05: a measured rate, at seeds that no environment variable freshens.
 /// Every right estimator is certified, but for those called biased. (At δ = 1e-2, sixteen times the draws: 24, 12, 15 and 30 of 1000.)
 #[test]
 fn at_most_five_in_a_hundred_right_estimators_are_called_biased_at_alpha_005() {
@@ -54,7 +54,7 @@ fn at_most_five_in_a_hundred_right_estimators_are_called_biased_at_alpha_005() {
         let check = check_of(section, 4e-2).alpha(0.05).unwrap();
         let mut counts = [0u32; 3];
         for seed in 0..1000 {
-            let report = check.seed(common::seed(1000 + seed)).run(&estimator).unwrap();
+            let report = check.seed(1000 + seed).run(&estimator).unwrap();
             counts[match report.verdict {
                 Verdict::Biased => 0,
                 Verdict::Unbiased => 1,
@@ -359,14 +359,13 @@ fn directions_of_another_density_are_refused() {
     assert!(!found.agrees && matches!(found.place, check::Place::Cell(..)), "{found}");
 }
 
-/// The band of DKW and the cells together: 300 right samplers at α = 0.3, none of which has been seen to be refused more than 90 times; by
-/// the bound at most 30 % are, and the binomial's 7 std errors are 18 %.
+/// The band of DKW and the cells together: 300 right samplers at α = 0.3 and pinned seeds.
 #[test]
 fn right_samplers_are_refused_no_more_often_than_claimed() {
     let exponential = Exponential::new(0.37).unwrap();
     let mut refused = [0, 0];
     for seed in 0..300 {
-        let seed = common::seed(5000 + seed);
+        let seed = 5000 + seed;
         refused[0] +=
             i32::from(!distributed_as(&exponential, |x| exponential.cdf(x), 0.1, 0.3, seed).unwrap().agrees);
         refused[1] += i32::from(
@@ -374,7 +373,7 @@ fn right_samplers_are_refused_no_more_often_than_claimed() {
         );
     }
     println!("refused at α = 0.3: {refused:?} of 300");
-    assert!(refused.iter().all(|&count| count <= 90 + 54), "{refused:?}");
+    assert!(refused.iter().all(|&count| count <= 90), "{refused:?}");
     assert!(refused[0] >= 10, "the band is never reached: {refused:?}");
 }
 

@@ -486,4 +486,11 @@ fn stuck_generators_give_finite_samples() {
             assert!(x.is_finite() && x >= 0.0 && y.is_finite() && y >= 0.0);
         }
     }
+    // nor from a law without a lower end, whose F⁻(0) is −∞
+    let normal = Normal::standard();
+    let inversion = Inversion::new(|x| normal.cdf(x), [f64::NEG_INFINITY, f64::INFINITY]).unwrap();
+    for word in [0, u64::MAX] {
+        let x = inversion.sample(&mut Constant(word));
+        assert!(x.is_finite() && x.abs() > 8.0 && (word == 0) == (x < 0.0), "{x}");
+    }
 }

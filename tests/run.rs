@@ -151,7 +151,9 @@ fn an_empty_budget_is_an_error() {
     ] {
         assert!(estimate(&one, budget, 1).is_err(), "{budget:?}");
     }
-    assert!(Run::new(1).threads(0).estimate(&one, Budget::Draws(1)).is_err());
+    for threads in [0, 1025, 100_000, usize::MAX] {
+        assert!(Run::new(1).threads(threads).estimate(&one, Budget::Draws(1)).is_err(), "{threads}");
+    }
 }
 
 /// The pilot's variance of 10⁶ draws is known to 0.3 %, so the std error reached is within 2 % (7 of its std errors) of the one asked for.
