@@ -12,23 +12,25 @@
 
 use std::process::ExitCode;
 
-use rand::distr::Distribution;
 use unbiased::check::Attempt;
-use unbiased::hemisphere::Hemisphere;
 use unbiased::workbook;
-
-/// The question that your estimator answers.
-const QUESTION: &str = "3.5";
 
 // ─────────────────────────────── your estimator ───────────────────────────────
 //
 // 1.1  Attempt::exponential(|rate, rng| …)               one sample
-// 2.1  Attempt::rectangle(|f, rectangle, rng| …)         one draw of ∫∫ f
+// 2.1  Attempt::rectangle(|f, rectangle, rng| …)         one draw of ∫∫ f(x, y), over any rectangle:
+//                                                        let ([a, b], [c, d]) = (rectangle.x_range(), rectangle.y_range());
 // 3.4  Attempt::hemisphere(|light, albedo, rng| …)       one draw of the reflected radiance (3.5, too)
 // 5.1  Attempt::bounces(|p_rr, rng| …)                   one number of bounces
 // 5    Attempt::roulette(|x, p_rr, rng| …)               one X_rr, where x(rng) draws X
 //
 // rng.uniform() is a uniform number in [0, 1).
+
+use rand::distr::Distribution;
+use unbiased::hemisphere::Hemisphere;
+
+/// The question that your estimator answers.
+const QUESTION: &str = "3.5";
 
 fn mine() -> Attempt<'static> {
     Attempt::hemisphere(|light, albedo, rng| {

@@ -24,15 +24,23 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
     roulette.bounces_by_simulation()?;
     let in_one_step = roulette.bounces_by_inversion()?;
 
-    let row = |part: &str, what| Answer::new(&format!("5.1({part})"), what).parameter("p_rr", p_rr);
+    let row = |part: &str, what: &str| Answer::new(&format!("5.1({part})"), what).parameter("p_rr", p_rr);
     let mut answers = Vec::new();
     for (part, k) in [("i", 0), ("ii", 2)] {
         let is_k = |bounces: f64| if bounces == k as f64 { 1.0 } else { 0.0 };
         let by_coins = from_fn(|rng| is_k(coin_by_coin.draw(rng)));
         let by_inversion = from_fn(|rng| is_k(in_one_step.draw(rng)));
-        let what = if k == 0 { "P(N = 0)" } else { "P(N = 2)" };
-        answers.push(row(part, what).truth(roulette.pmf(k)).outcome(&options.run(&by_coins, 1_000_000)?));
-        answers.push(row(part, what).truth(roulette.pmf(k)).outcome(&options.run(&by_inversion, 1_000_000)?));
+        let what = |way| format!("P(N = {k}), {way}");
+        answers.push(
+            row(part, &what("coin by coin"))
+                .truth(roulette.pmf(k))
+                .outcome(&options.run(&by_coins, 1_000_000)?),
+        );
+        answers.push(
+            row(part, &what("in one step"))
+                .truth(roulette.pmf(k))
+                .outcome(&options.run(&by_inversion, 1_000_000)?),
+        );
     }
     answers.push(
         row("iii", "E[N], coin by coin")

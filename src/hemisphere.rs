@@ -1,4 +1,4 @@
-//! Sections 3 and 4: directions above a surface, drawn uniformly or in proportion to cos θ.
+//! Section 3: directions above a surface, drawn uniformly or in proportion to cos θ.
 
 use std::f64::consts::{FRAC_1_PI, TAU};
 

@@ -336,6 +336,7 @@ fn bad_input_gets_one_sentence_an_exit_code_and_leaves_nothing_behind() {
         ("q1_1_exponential", &["--rate", "nan"], 2, "not NaN"),
         ("q1_1_exponential", &["--rate", "inf"], 2, "not inf"),
         ("q1_1_exponential", &["--rate", "fast"], 2, "--rate takes a number, not \"fast\""),
+        ("q1_1_exponential", &["--rate", "1/x"], 2, "--rate takes a number, not \"1/x\""),
         ("q1_1_exponential", &["--rate"], 2, "missing argument"),
         ("q1_2_one_sample", &["--u", "1.5"], 2, "the probability u must be in [0, 1], not 1.5"),
         ("q1_3_axes", &["--draws", "0"], 2, "--draws takes a positive whole number, not 0"),
@@ -505,7 +506,17 @@ fn people_see_the_interval_the_z_and_the_command_that_repeats_it() {
         &["--rate", "2.5", "--draws", "5000", "--seed", "9", "--out", out.to_str().unwrap()],
     );
     let text = String::from_utf8(output.stdout).unwrap();
-    for part in ["closed form", "truth    0.4", "(95 %)", "z = ", "✓", "5000 draws", "seed 9", ".svg"] {
+    for part in [
+        "closed form",
+        "rate = 2.5, instead of the sheet's",
+        "truth    0.4",
+        "(95 %)",
+        "z = ",
+        "✓",
+        "5000 draws",
+        "seed 9",
+        ".svg",
+    ] {
         assert!(text.contains(part), "{part:?} is missing in\n{text}");
     }
     assert!(

@@ -61,7 +61,9 @@ impl Wish {
         let said = if self.help {
             HELP.to_owned()
         } else if let Some(answer) = &self.answer {
-            format!("{}: {}", self.question, check::judge_answer(&self.question, answer)?)
+            let judgement = check::judge_answer(&self.question, answer)?;
+            let what = check::answers(&self.question).map_or("", |answer| answer.what);
+            format!("{}, {what}: {judgement}", self.question)
         } else if let Some(file) = &self.draws_from {
             self.judge_draws(file)?
         } else {

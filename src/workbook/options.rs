@@ -92,9 +92,8 @@ impl Request {
                         return Err(Error::Usage(format!("there is no option --{name}; --help lists them")));
                     }
                     let given = text(&mut line, &format!("--{name}"))?;
-                    let value = given
-                        .parse()
-                        .map_err(|_| Error::Usage(format!("--{name} takes a number, not \"{given}\"")))?;
+                    let value = number(&given)
+                        .ok_or_else(|| Error::Usage(format!("--{name} takes a number, not \"{given}\"")))?;
                     options.given.push((name, value));
                 }
             }
@@ -122,6 +121,14 @@ pub(super) fn count(line: &mut Parser, name: &str) -> Result<u64> {
     match whole(line, name)? {
         0 => Err(Error::Usage(format!("{name} takes a positive whole number, not 0"))),
         count => Ok(count),
+    }
+}
+
+/// A number or a fraction of two: `0.8`, `4/5`.
+fn number(text: &str) -> Option<f64> {
+    match text.split_once('/') {
+        Some((above, below)) => Some(above.parse::<f64>().ok()? / below.parse::<f64>().ok()?),
+        None => text.parse().ok(),
     }
 }
 
@@ -209,6 +216,16 @@ impl Options {
         let parameters = answers.into_iter().flat_map(Answer::parameters);
         let as_given = |name: &str, value: f64| (self.number(&name.replace('_', "-")) - value).abs() <= 0.0;
         parameters.filter(|(name, value)| !as_given(name, *value)).map(|(name, _)| *name).collect()
+    }
+
+    /// The question's own options that are not at their defaults: `u = 0.3`.
+    pub(super) fn own(&self, question: &Question) -> String {
+        let changed = question.parameters.iter().filter_map(|parameter| {
+            let value = self.number(parameter.name);
+            let as_asked = (value - parameter.default).abs() <= 0.0;
+            (!as_asked).then(|| format!("{} = {}", parameter.name, print::shortened(value)))
+        });
+        changed.collect::<Vec<_>>().join(", ")
     }
 
     /// The command that repeats this answer.

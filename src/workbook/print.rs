@@ -17,10 +17,13 @@ pub(super) fn answers(question: &Question, answers: &[Answer], options: &Options
         for figure in answer.figures(options.edition) {
             paths.extend(figure.save(&options.out)?);
         }
-        rows.push((answer, paths));
+        // in the student edition one row a question will do, and those with something to mark
+        if options.edition == Edition::Solution || rows.is_empty() || !paths.is_empty() {
+            rows.push((answer, paths));
+        }
     }
     let printed = if options.json {
-        rows.iter().try_for_each(|(answer, paths)| json(answer, paths, options))
+        rows.iter().try_for_each(|(answer, paths)| json(question, answer, paths, options))
     } else {
         text(question, &rows, options)
     };
@@ -58,13 +61,13 @@ struct Row<'a> {
     figures: &'a [PathBuf],
 }
 
-fn json(answer: &Answer, figures: &[PathBuf], options: &Options) -> io::Result<()> {
+fn json(question: &Question, answer: &Answer, figures: &[PathBuf], options: &Options) -> io::Result<()> {
     let told = options.edition == Edition::Solution;
     let estimate = answer.estimate().filter(|_| told);
     let parameters = answer.parameters().iter().map(|(name, value)| ((*name).into(), (*value).into()));
     let row = Row {
         question: answer.question(),
-        what: answer.what(),
+        what: if told { answer.what() } else { question.title },
         kind: answer.kind(),
         parameters: parameters.collect(),
         truth: answer.exact().filter(|_| told),
@@ -84,6 +87,10 @@ fn text(question: &Question, rows: &[(&Answer, Vec<PathBuf>)], options: &Options
     wrapped(out, question.statement)?;
     if options.edition == Edition::Solution {
         writeln!(out, "\n    closed form  {}", question.formula)?;
+        let own = options.own(question);
+        if !own.is_empty() {
+            writeln!(out, "    below        {own}, instead of the sheet's")?;
+        }
     }
     let varied = options.varied(rows.iter().map(|(answer, _)| *answer));
     for (answer, paths) in rows {
@@ -111,7 +118,10 @@ fn solution(out: &mut impl Write, answer: &Answer, varied: &[&str]) -> io::Resul
         writeln!(out, "        truth    {}", shortened(truth))?;
     }
     if let Some(estimate) = answer.estimate() {
-        write!(out, "        estimate {} (95 %)", interval(answer))?;
+        write!(out, "        estimate {}", interval(answer))?;
+        if estimate.draws() > 1 {
+            write!(out, " (95 %)")?;
+        }
         if let Some(z) = answer.z() {
             write!(out, "   z = {z:.2}")?;
         }
