@@ -3,8 +3,7 @@
 //! A test is a row of [`TABLE`]: so many cases certified to within a thousandth, so many to within a hundredth, each by the sequential test of
 //! `check::Unbiased`, which must say *unbiased*; *undecided* fails. A relative bias of 1e-3 (1e-2 where only coarse cases stand) is caught in every
 //! run but for two in 10⁶. Estimators of at most two random numbers are integrated as well, by `check::exactly`: to 1e-9, over far more parameters, with
-//! no noise and no false alarm. (Jumps are put at multiples of 2⁻ᵏ, where halving finds them: bisection does not look between a
-//! piece's end and its first node.)
+//! no noise and no false alarm.
 //!
 //! Draws must be bounded to be certified. X ≥ 0 without a bound is tested through F(X) and min(X, c), whose means are known; roulette's
 //! paths are bounded for q > ρ, by q/(q − ρ), go through min(X, c) at q = ρ, and for q < ρ through \[X > 0\], which sees the coins but not the weights:
