@@ -32,6 +32,18 @@ pub enum Error {
         /// The counts that would have been accepted.
         allowed: &'static str,
     },
+    /// A point of the box room lies where it must not.
+    #[error("the point ({x}, {y}, {z}) {reason}")]
+    Point {
+        /// Its x coordinate in metres.
+        x: f64,
+        /// Its y coordinate.
+        y: f64,
+        /// Its z coordinate.
+        z: f64,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
     /// An estimator returned NaN or an infinity, which no mean can hold.
     #[error("draw {draw} of block {block} is {value} (seed {seed}): an estimate needs finite draws")]
     Draw {

@@ -50,6 +50,7 @@
 //! - `workbook` (default): figures as SVG and CSV, the examples' command line, the page.
 //! - `png`, `pdf`: figures in those formats, too.
 
+pub mod box_room;
 pub mod check;
 pub mod density;
 pub mod error;
@@ -59,6 +60,7 @@ pub mod figure;
 pub mod hemisphere;
 pub mod inversion;
 pub mod lambertian;
+pub mod paths;
 pub mod rectangle;
 pub mod roulette;
 pub mod run;

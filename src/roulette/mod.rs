@@ -136,7 +136,7 @@ impl<X: Estimator> Estimator for RussianRoulette<X> {
 /// U < p alone would round p up to the grid k·2⁻⁵³: p = 1e-300 to 1.1e-16. So where U is the last point of the grid below p,
 /// another number decides with the part of p that lies beyond it.
 #[inline]
-fn coin<R: Rng + ?Sized>(rng: &mut R, mut p: f64) -> bool {
+pub(crate) fn coin<R: Rng + ?Sized>(rng: &mut R, mut p: f64) -> bool {
     const GRID: f64 = (1u64 << 53) as f64;
     loop {
         let u: f64 = StandardUniform.sample(rng);
@@ -174,6 +174,6 @@ fn square_over(x: f64, p: f64) -> (f64, f64) {
 }
 
 /// How many draws share a stream where each is this much work: a block stays a matter of milliseconds.
-fn draws_for(work: f64) -> u64 {
+pub(crate) fn draws_for(work: f64) -> u64 {
     (f64::from(1 << 18) / work).clamp(1.0, f64::from(1 << 14)) as u64
 }

@@ -1,0 +1,205 @@
+//! The faces of room and cube, and points on them.
+
+use glam::DVec3;
+
+use crate::error::{Error, Result};
+use crate::hemisphere::Direction;
+
+/// A face of the room, seen from inside, or of the cube, seen from outside. The light is a part of the ceiling.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Face {
+    /// The cube's top z = 1.
+    CubeTop,
+    /// The cube's side x = −½.
+    CubeWest,
+    /// The cube's side x = ½.
+    CubeEast,
+    /// The cube's side y = −½.
+    CubeSouth,
+    /// The cube's side y = ½.
+    CubeNorth,
+    /// z = 0, outside the cube.
+    Floor,
+    /// z = 4.
+    Ceiling,
+    /// The wall x = −2.
+    West,
+    /// The wall x = 2.
+    East,
+    /// The wall y = −2.
+    South,
+    /// The wall y = 2.
+    North,
+}
+
+impl Face {
+    /// Half the room's width in metres.
+    pub const ROOM_HALF_WIDTH: f64 = 2.0;
+    /// The room's height in metres.
+    pub const ROOM_HEIGHT: f64 = 4.0;
+    /// Half the cube's width in metres.
+    pub const CUBE_HALF_WIDTH: f64 = 0.5;
+    /// The cube's height in metres.
+    pub const CUBE_HEIGHT: f64 = 1.0;
+
+    /// All of them; on an edge, [`Vertex::at`] takes the first.
+    pub const ALL: [Self; 11] = [
+        Self::CubeTop,
+        Self::CubeWest,
+        Self::CubeEast,
+        Self::CubeSouth,
+        Self::CubeNorth,
+        Self::Floor,
+        Self::Ceiling,
+        Self::West,
+        Self::East,
+        Self::South,
+        Self::North,
+    ];
+
+    /// Whether it belongs to the cube.
+    #[inline]
+    pub fn is_cube(self) -> bool {
+        self as u8 <= Self::CubeNorth as u8
+    }
+
+    /// The normal, which points into the room and away from the cube.
+    #[inline]
+    pub fn normal(self) -> DVec3 {
+        self.frame()[2]
+    }
+
+    /// Two tangents and the normal.
+    #[inline]
+    fn frame(self) -> &'static [DVec3; 3] {
+        // the remainder is never taken, and tells the compiler that the index is in range
+        &FRAMES[self as usize % FRAMES.len()]
+    }
+
+    /// The smallest and the largest coordinates of its points. The floor's are those of the whole square, with what the cube stands on.
+    #[inline]
+    pub fn bounds(self) -> [DVec3; 2] {
+        BOUNDS[self as usize % BOUNDS.len()]
+    }
+
+    /// The area in m²: the floor's without what the cube stands on, the ceiling's with the light.
+    pub fn area(self) -> f64 {
+        match self {
+            Self::Floor => 15.0,
+            _ if self.is_cube() => 1.0,
+            _ => 16.0,
+        }
+    }
+}
+
+/// Two tangents and the normal of each face, in the order of [`Face::ALL`]. Whether a frame is right- or left-handed makes no difference to
+/// directions that are symmetric around the normal.
+const FRAMES: [[DVec3; 3]; 11] = [
+    [DVec3::X, DVec3::Y, DVec3::Z],
+    [DVec3::Y, DVec3::Z, DVec3::NEG_X],
+    [DVec3::Y, DVec3::Z, DVec3::X],
+    [DVec3::X, DVec3::Z, DVec3::NEG_Y],
+    [DVec3::X, DVec3::Z, DVec3::Y],
+    [DVec3::X, DVec3::Y, DVec3::Z],
+    [DVec3::X, DVec3::Y, DVec3::NEG_Z],
+    [DVec3::Y, DVec3::Z, DVec3::X],
+    [DVec3::Y, DVec3::Z, DVec3::NEG_X],
+    [DVec3::X, DVec3::Z, DVec3::Y],
+    [DVec3::X, DVec3::Z, DVec3::NEG_Y],
+];
+
+/// The lower and upper ends of each face, in the order of [`Face::ALL`].
+const BOUNDS: [[DVec3; 2]; 11] = {
+    const W: f64 = Face::ROOM_HALF_WIDTH;
+    const H: f64 = Face::ROOM_HEIGHT;
+    const C: f64 = Face::CUBE_HALF_WIDTH;
+    const T: f64 = Face::CUBE_HEIGHT;
+    [
+        [DVec3::new(-C, -C, T), DVec3::new(C, C, T)],
+        [DVec3::new(-C, -C, 0.0), DVec3::new(-C, C, T)],
+        [DVec3::new(C, -C, 0.0), DVec3::new(C, C, T)],
+        [DVec3::new(-C, -C, 0.0), DVec3::new(C, -C, T)],
+        [DVec3::new(-C, C, 0.0), DVec3::new(C, C, T)],
+        [DVec3::new(-W, -W, 0.0), DVec3::new(W, W, 0.0)],
+        [DVec3::new(-W, -W, H), DVec3::new(W, W, H)],
+        [DVec3::new(-W, -W, 0.0), DVec3::new(-W, W, H)],
+        [DVec3::new(W, -W, 0.0), DVec3::new(W, W, H)],
+        [DVec3::new(-W, -W, 0.0), DVec3::new(W, -W, H)],
+        [DVec3::new(-W, W, 0.0), DVec3::new(W, W, H)],
+    ]
+};
+
+/// A point on a face: a vertex of a path.
+///
+/// ```
+/// use unbiased::box_room::{Face, Vertex};
+///
+/// let p = Vertex::at([0.0, 0.0, 1.0])?;
+/// assert_eq!(p.face(), Face::CubeTop);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Vertex {
+    position: DVec3,
+    face: Face,
+}
+
+impl Vertex {
+    /// The point at these coordinates, with the face that it lies on. On an edge, which several faces share, the cube's top comes first,
+    /// then the cube's sides, the floor, the ceiling and the walls.
+    ///
+    /// # Errors
+    /// If no face is there, or only the part of the floor that the cube stands on.
+    pub fn at(point: [f64; 3]) -> Result<Self> {
+        let position = DVec3::from_array(point);
+        let contains = |face: &Face| {
+            let [low, high] = face.bounds();
+            position.cmpge(low).all() && position.cmple(high).all()
+        };
+        match Face::ALL.into_iter().find(contains) {
+            Some(Face::Floor) if under_the_cube(position) => Err(off(point, "lies under the cube")),
+            Some(face) => Ok(Self { position, face }),
+            None => Err(off(point, "lies on no face of the room or the cube")),
+        }
+    }
+
+    #[inline]
+    pub(super) fn new(position: DVec3, face: Face) -> Self {
+        Self { position, face }
+    }
+
+    /// Where it is, in metres.
+    #[inline]
+    pub fn position(&self) -> DVec3 {
+        self.position
+    }
+
+    /// The face that it lies on.
+    #[inline]
+    pub fn face(&self) -> Face {
+        self.face
+    }
+
+    /// The normal there.
+    #[inline]
+    pub fn normal(&self) -> DVec3 {
+        self.face.normal()
+    }
+
+    /// A direction above this point's face, given in the face's own frame with z along the normal, in the room's coordinates.
+    #[inline]
+    pub fn to_room(&self, direction: &Direction) -> DVec3 {
+        let [tangent, other, normal] = self.face.frame();
+        let local = direction.vector();
+        *tangent * local.x + *other * local.y + *normal * local.z
+    }
+}
+
+fn under_the_cube(position: DVec3) -> bool {
+    position.x.abs().max(position.y.abs()) < Face::CUBE_HALF_WIDTH
+}
+
+/// The error of a point that is none of a face.
+pub(super) fn off([x, y, z]: [f64; 3], reason: &'static str) -> Error {
+    Error::Point { x, y, z, reason }
+}

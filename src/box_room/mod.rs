@@ -1,0 +1,197 @@
+//! Section 4: the box room, the one scene that the worksheet's paths need.
+//!
+//! In metres, z up: a room \[−2, 2\]×\[−2, 2\]×\[0, 4\] of diffuse faces; the cube \[−½, ½\]²×\[0, 1\] on its floor; a square light in the
+//! middle of the ceiling, facing down and reflecting nothing; and p, the point whose radiance is asked for. The shapes are fixed,
+//! so a ray is followed by two slab tests, one from inside the room and one from outside the cube: [`nearest_hit`] and [`visible`]. A scene's
+//! numbers can be chosen: [`Scene`] holds them, [`BoxRoom`] is a scene that was found sound.
+//!
+//! The light that reaches a point at once has a closed form where the cube hides none of it, [`BoxRoom::direct`], made of the form
+//! factor of a polygon, [`form_factor`]. What arrives after more bounces is estimated by [`paths`](crate::paths).
+
+use glam::DVec3;
+
+use crate::error::{Result, require};
+use crate::stream::Stream;
+
+mod face;
+mod polygon;
+mod ray;
+
+pub use face::{Face, Vertex};
+pub use polygon::form_factor;
+pub(crate) use ray::nearest;
+pub use ray::{nearest_hit, visible};
+
+/// The numbers of the scene, unchecked; [`Default`] is the worksheet's.
+///
+/// ```
+/// use unbiased::box_room::{BoxRoom, Scene};
+///
+/// let dark_walls = BoxRoom::new(Scene { wall_albedo: 0.1, ..Scene::default() })?;
+/// assert_eq!(dark_walls.scene().cube_albedo, 0.8);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scene {
+    /// The albedo ρ of the room's six faces, 0.5.
+    pub wall_albedo: f64,
+    /// The albedo ρ of the cube's five, 0.8.
+    pub cube_albedo: f64,
+    /// The radiance L_e of the light in W m⁻² sr⁻¹, 10.
+    pub radiance: f64,
+    /// Half the light's side in metres, ½; 0 is no light.
+    pub light_half_width: f64,
+    /// The radiance that every face emits, the light apart: 0. With it and no light the room is a furnace, in which everything is exact.
+    pub emission: f64,
+    /// The point p, (0, 0, 1): the middle of the cube's top.
+    pub point: [f64; 3],
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Self {
+            wall_albedo: 0.5,
+            cube_albedo: 0.8,
+            radiance: 10.0,
+            light_half_width: 0.5,
+            emission: 0.0,
+            point: [0.0, 0.0, 1.0],
+        }
+    }
+}
+
+/// A scene that was found sound.
+///
+/// ```
+/// use unbiased::box_room::{BoxRoom, Scene};
+///
+/// let room = BoxRoom::new(Scene::default())?;
+/// assert!((room.direct(&room.point()) - 0.2728543591976926).abs() < 1e-15);
+/// let error = BoxRoom::new(Scene { point: [0.0, 0.0, 1.5], ..Scene::default() }).unwrap_err();
+/// assert_eq!(error.to_string(), "the point (0, 0, 1.5) lies on no face of the room or the cube");
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoxRoom {
+    scene: Scene,
+    point: Vertex,
+}
+
+impl BoxRoom {
+    /// The scene, checked.
+    ///
+    /// # Errors
+    /// If an albedo is not in \[0, 1\], the radiance or the emission is negative or not finite, the light does not fit the ceiling, or p lies
+    /// on no face, under the cube, or on the light, which reflects nothing.
+    pub fn new(scene: Scene) -> Result<Self> {
+        let fraction = |name, albedo: f64| {
+            let allowed = "between 0 and 1 (above 1 it would create energy)";
+            require(name, albedo, (0.0..=1.0).contains(&albedo), allowed)
+        };
+        let radiance = |name, value: f64| {
+            require(name, value, value >= 0.0 && value.is_finite(), "0 or positive, and finite")
+        };
+        fraction("the walls' albedo", scene.wall_albedo)?;
+        fraction("the cube's albedo", scene.cube_albedo)?;
+        radiance("the light's radiance", scene.radiance)?;
+        radiance("the faces' emission", scene.emission)?;
+        let fits = (0.0..=Face::ROOM_HALF_WIDTH).contains(&scene.light_half_width);
+        require(
+            "the light's half-width",
+            scene.light_half_width,
+            fits,
+            "from 0 (no light) to 2 (all of the ceiling)",
+        )?;
+        let point = Vertex::at(scene.point)?;
+        let room = Self { scene, point };
+        if room.is_light(&point) {
+            return Err(face::off(scene.point, "lies on the light, which reflects nothing"));
+        }
+        Ok(room)
+    }
+
+    /// Its numbers.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The point p with its face.
+    pub fn point(&self) -> Vertex {
+        self.point
+    }
+
+    /// Whether a point belongs to the light, whose edge does.
+    #[inline]
+    pub fn is_light(&self, vertex: &Vertex) -> bool {
+        let (h, at) = (self.scene.light_half_width, vertex.position());
+        vertex.face() == Face::Ceiling && at.x.abs().max(at.y.abs()) <= h && h > 0.0
+    }
+
+    /// The albedo at a point: the walls', the cube's, or 0 on the light.
+    #[inline]
+    pub fn albedo(&self, vertex: &Vertex) -> f64 {
+        match vertex.face() {
+            face if face.is_cube() => self.scene.cube_albedo,
+            _ if self.is_light(vertex) => 0.0,
+            _ => self.scene.wall_albedo,
+        }
+    }
+
+    /// The radiance L_e that a point emits.
+    #[inline]
+    pub fn emitted(&self, vertex: &Vertex) -> f64 {
+        if self.is_light(vertex) { self.scene.radiance } else { self.scene.emission }
+    }
+
+    /// The light's four corners.
+    pub fn light_corners(&self) -> [DVec3; 4] {
+        let h = self.scene.light_half_width;
+        [[-h, -h], [h, -h], [h, h], [-h, h]].map(|[x, y]| DVec3::new(x, y, Face::ROOM_HEIGHT))
+    }
+
+    /// The light's area in m².
+    pub fn light_area(&self) -> f64 {
+        let side = 2.0 * self.scene.light_half_width;
+        side * side
+    }
+
+    /// The radiance that comes from the light to a point and off it, ρ L_e P with P the light's [`form_factor`], **as if the cube hid nothing**: light
+    /// after one bounce, k = 1.
+    ///
+    /// It is exact from z = 1 upwards: on the cube's top, and on the walls above its height.
+    pub fn direct(&self, vertex: &Vertex) -> f64 {
+        let seen = form_factor(&self.light_corners(), vertex.position(), vertex.normal());
+        self.albedo(vertex) * self.scene.radiance * seen
+    }
+
+    /// A point drawn uniformly on the light, and what it sends to `vertex`.
+    #[inline]
+    pub(crate) fn sample_light(&self, vertex: &Vertex, rng: &mut Stream) -> LightSample {
+        let h = self.scene.light_half_width;
+        let (u, v) = (rng.uniform(), rng.uniform());
+        let point = DVec3::new(h * (2.0 * u - 1.0), h * (2.0 * v - 1.0), Face::ROOM_HEIGHT);
+        let way = point - vertex.position();
+        // r cos θ at the vertex, and at the light, which looks down
+        let (here, there) = (vertex.normal().dot(way), way.z);
+        if here <= 0.0 || there <= 0.0 {
+            return LightSample { point, irradiance: 0.0, visible: false };
+        }
+        rng.count_evaluations(1);
+        let visible = visible(vertex, point);
+        let r2 = way.length_squared();
+        let geometry = here * there / (r2 * r2);
+        let irradiance = if visible { self.scene.radiance * self.light_area() * geometry } else { 0.0 };
+        LightSample { point, irradiance, visible }
+    }
+}
+
+/// One point of the light, drawn uniformly.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LightSample {
+    /// Where.
+    pub point: DVec3,
+    /// L_e A cos θ cos θ′/r², an unbiased estimate of the irradiance in W m⁻²; 0 where it is not seen.
+    pub irradiance: f64,
+    /// Whether it is seen.
+    pub visible: bool,
+}

@@ -1,0 +1,163 @@
+//! Where a ray ends: two slab tests.
+//!
+//! A ray is inside the room and outside the cube, so it ends at the first of the room's planes that lies ahead unless it enters the cube before that. The
+//! coordinate along the normal of the face that it hits is set exactly, and the others are kept within the face, so no ray starts a hair
+//! behind its face, none hits the face it starts on, and no distance has to be added for that.
+
+use glam::DVec3;
+
+use super::face::{Face, Vertex};
+
+/// The first point that a ray from `from` meets in `direction` (of any length, in the room's coordinates). None if the direction has no length, is
+/// not finite, or points below the horizon of `from`.
+///
+/// Special rays are treated so that every one of them ends on a face:
+/// - Along a face of the room, it goes on to the wall ahead. Along a face of the cube, or through its edge or corner without entering it, it passes.
+/// - Into an edge or corner of the room, it ends there, on one of the faces that meet.
+/// - Along the floor it ends at the cube: nothing passes under it.
+/// - From an edge between two faces of the room towards the other one, it ends where it starts, on that other one.
+///
+/// ```
+/// use glam::DVec3;
+/// use unbiased::box_room::{Face, Vertex, nearest_hit};
+///
+/// let p = Vertex::at([0.0, 0.0, 1.0])?;
+/// let hit = nearest_hit(&p, DVec3::new(1.0, 0.0, 1.0)).unwrap();
+/// assert_eq!((hit.face(), hit.position()), (Face::East, DVec3::new(2.0, 0.0, 3.0)));
+/// assert_eq!(nearest_hit(&p, DVec3::NEG_Z), None);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+pub fn nearest_hit(from: &Vertex, direction: DVec3) -> Option<Vertex> {
+    let largest = direction.abs().max_element();
+    if !(direction.is_finite() && largest > 0.0 && from.normal().dot(direction) >= 0.0) {
+        return None;
+    }
+    // twice, as the largest component may be subnormal
+    let scaled = direction / largest;
+    Some(nearest(from.position(), scaled / scaled.length()))
+}
+
+/// The same for a unit direction that is known to be above the horizon.
+#[inline]
+pub(crate) fn nearest(origin: DVec3, direction: DVec3) -> Vertex {
+    let ray = Ray::new(origin, direction);
+    let (to_wall, wall) = ray.room();
+    let (enters, leaves, side) = ray.cube();
+    // an origin that rounding put a hair inside the cube counts as on its face
+    let (distance, face) = if enters < leaves && leaves > 0.0 && enters <= to_wall {
+        (enters.max(0.0), side)
+    } else {
+        (to_wall, wall)
+    };
+    ray.at(distance, face)
+}
+
+/// Whether the cube leaves the view from `from` to a point of the room free. It may be touched.
+///
+/// ```
+/// use glam::DVec3;
+/// use unbiased::box_room::{Vertex, visible};
+///
+/// let floor = Vertex::at([1.5, 0.0, 0.0])?;
+/// assert!(visible(&floor, DVec3::new(0.5, 0.0, 4.0)));
+/// assert!(!visible(&floor, DVec3::new(-1.5, 0.0, 0.5)));
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+#[inline]
+pub fn visible(from: &Vertex, to: DVec3) -> bool {
+    let origin = from.position();
+    if origin.z.min(to.z) >= Face::CUBE_HEIGHT {
+        return true; // quickly, for most
+    }
+    let (enters, leaves, _) = Ray::new(origin, to - origin).cube();
+    !(enters < leaves && leaves > 0.0 && enters < 1.0)
+}
+
+/// A ray, with what both tests need of it.
+struct Ray {
+    origin: DVec3,
+    direction: DVec3,
+    inverse: DVec3,
+}
+
+impl Ray {
+    #[inline]
+    fn new(origin: DVec3, direction: DVec3) -> Self {
+        // so steep that its inverse may overflow, a component moves nothing in a room of a few metres
+        let flat = |d: f64| if d.abs() < 1e-300 { 0.0 } else { d };
+        let direction = DVec3::new(flat(direction.x), flat(direction.y), flat(direction.z));
+        Self { origin, direction, inverse: direction.recip() }
+    }
+
+    /// How far the first of the room's planes is, and which.
+    #[inline]
+    fn room(&self) -> (f64, Face) {
+        let w = Face::ROOM_HALF_WIDTH;
+        let x = self.ahead(self.direction.x, self.origin.x, self.inverse.x, -w, w);
+        let y = self.ahead(self.direction.y, self.origin.y, self.inverse.y, -w, w);
+        let z = self.ahead(self.direction.z, self.origin.z, self.inverse.z, 0.0, Face::ROOM_HEIGHT);
+        let pick = |ahead: bool, high, low| if ahead { high } else { low };
+        // one selection after another, as a processor cannot foresee which of three is the least
+        let mut first = (x, pick(self.direction.x > 0.0, Face::East, Face::West));
+        if y < first.0 {
+            first = (y, pick(self.direction.y > 0.0, Face::North, Face::South));
+        }
+        if z < first.0 {
+            first = (z, pick(self.direction.z > 0.0, Face::Ceiling, Face::Floor));
+        }
+        first
+    }
+
+    /// How far the plane ahead on one axis is.
+    #[inline]
+    fn ahead(&self, direction: f64, origin: f64, inverse: f64, low: f64, high: f64) -> f64 {
+        if direction == 0.0 {
+            return f64::INFINITY;
+        }
+        let plane = if direction > 0.0 { high } else { low };
+        (plane - origin) * inverse
+    }
+
+    /// Where the ray's line enters the cube and where it leaves it, and through which face it enters. It meets the cube where it
+    /// enters before it leaves; the cube's z has no lower end, since nothing passes under it.
+    #[inline]
+    fn cube(&self) -> (f64, f64, Face) {
+        let (w, top) = (Face::CUBE_HALF_WIDTH, Face::CUBE_HEIGHT);
+        let (x_in, x_out) = between(self.direction.x, self.origin.x, self.inverse.x, w);
+        let (y_in, y_out) = between(self.direction.y, self.origin.y, self.inverse.y, w);
+        let to_top = (top - self.origin.z) * self.inverse.z;
+        let (z_in, z_out) = match self.direction.z {
+            z if z > 0.0 => (f64::NEG_INFINITY, to_top),
+            z if z < 0.0 => (to_top, f64::INFINITY),
+            _ if self.origin.z < top => (f64::NEG_INFINITY, f64::INFINITY),
+            _ => (f64::INFINITY, f64::NEG_INFINITY),
+        };
+        let pick = |ahead: bool, low, high| if ahead { low } else { high };
+        let mut last = (x_in, pick(self.direction.x > 0.0, Face::CubeWest, Face::CubeEast));
+        if y_in > last.0 {
+            last = (y_in, pick(self.direction.y > 0.0, Face::CubeSouth, Face::CubeNorth));
+        }
+        if z_in > last.0 {
+            last = (z_in, Face::CubeTop);
+        }
+        (last.0, x_out.min(y_out).min(z_out), last.1)
+    }
+
+    /// The point at this distance, put on its face exactly.
+    #[inline]
+    fn at(&self, distance: f64, face: Face) -> Vertex {
+        let [low, high] = face.bounds();
+        Vertex::new((self.origin + self.direction * distance).clamp(low, high), face)
+    }
+}
+
+/// Where a line enters and leaves the slab from −w to w on one axis. A line along it is in it if it is strictly between.
+#[inline]
+fn between(direction: f64, origin: f64, inverse: f64, w: f64) -> (f64, f64) {
+    if direction == 0.0 {
+        let inside = if origin.abs() < w { f64::INFINITY } else { f64::NEG_INFINITY };
+        return (-inside, inside);
+    }
+    let (low, high) = ((-w - origin) * inverse, (w - origin) * inverse);
+    (low.min(high), low.max(high))
+}

@@ -1,0 +1,354 @@
+//! Section 4: light along paths in the [box room](crate::box_room).
+//!
+//! # From one bounce to all
+//! Light leaves p towards the eye in the direction ω_o as (*the rendering equation*, Kajiya 1986)
+//!
+//! > L_o(p, ω_o) = L_e(p) + ∫ f_r L_i(p, ω) cos θ dω.
+//!
+//! - **3.4** draws ω_i and averages f_r L_i cos θ_i/p(ω_i), where L_i is a light that is known.
+//! - **4.3** In a room, what comes from ω_i left another point: L_i(p, ω_i) = L_o(p_j, −ω_i), p_j being the first point that a ray from p meets. So
+//!
+//!   > L̂_o(p, ω_o) = 1/n Σ f_r L_o(p_j, −ω_ij) cos θ_ij/p(ω_ij).
+//!
+//!   If L_o(p_j) is the light reflected *once* at p_j, this is the part of two bounces. What matters is its mean: an unbiased estimate L̂_o(p_j) in its place, drawn
+//!   afresh for each ω_ij, leaves the whole unbiased. [`reflected`] is this estimator, with any L̂_o plugged in.
+//! - **5** If L̂_o(p_j) is this very estimator, the path goes on from p_j to p_j′ and for ever; written out, without recursion, it is a loop along one path with the
+//!   product of its weights f_r cos θ/p. Roulette ends it: it goes on with probability q, its weight divided by q, so the mean stays. [`Paths`] is that loop.
+//!
+//! # What a bounce is
+//! A bounce is a vertex of the path between the light and the eye. L_o(p) = Σ L_k, with L_k the light after k bounces: k = 0 is what p itself emits, k = 1
+//! what comes from the light to p at once, k = 2 what comes by way of one other point p_j.
+//!
+//! # How the light is found
+//! By chance, when a path happens on it, or by a sample of its area at every vertex (*next-event estimation*, Coveyou et al. 1967): with y uniform on the light of area A, and V = 1 where
+//! the cube leaves the view free, f_r L_e V cos θ cos θ_y A/r² in place of a ray. Both are unbiased. What is found in one way must not be found in the other, too: where the light is sampled, a path that
+//! happens on it adds nothing, and what the faces emit is found by chance always.
+
+use glam::DVec3;
+use rand::distr::Distribution;
+
+use crate::box_room::{BoxRoom, Vertex, nearest};
+use crate::density::Density;
+use crate::error::{Result, require, require_count};
+use crate::hemisphere::{Direction, Hemisphere};
+use crate::roulette::{Roulette, coin, draws_for};
+use crate::run::{Estimator, from_fn};
+use crate::stream::Stream;
+
+/// How a path finds the light.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum FindLight {
+    /// When a ray happens on it.
+    ByChance,
+    /// By a point drawn uniformly on it, at every vertex.
+    BySampling,
+}
+
+impl FindLight {
+    /// Both, to loop over.
+    pub const ALL: [Self; 2] = [Self::ByChance, Self::BySampling];
+}
+
+/// Which bounces are counted, and what ends a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bounces {
+    /// The light after exactly this many.
+    Exactly(u32),
+    /// The light after 0, 1, … up to this many.
+    UpTo(u32),
+    /// All light. A path goes on with this probability q after every vertex.
+    All(f64),
+    /// All light. A path goes on with probability min(1, w), w being its weight: it becomes 1 if the path goes on.
+    AllByWeight,
+}
+
+/// The most bounces that can be counted one by one.
+pub const MOST_BOUNCES: u32 = 64;
+
+/// The largest probability of going on: the mean number of bounces is q/(1 − q).
+const MOST_Q: f64 = 0.9999;
+
+/// The largest albedo that ends paths by itself, in a thousand bounces or so.
+const MOST_ALBEDO: f64 = 0.999;
+
+/// The light that leaves p, estimated along one random path a draw, in W m⁻² sr⁻¹.
+///
+/// ```
+/// use unbiased::box_room::{BoxRoom, Scene};
+/// use unbiased::hemisphere::Hemisphere;
+/// use unbiased::paths::{Bounces, FindLight, Paths};
+/// use unbiased::{Budget, estimate};
+///
+/// let room = BoxRoom::new(Scene::default())?;
+/// let two_bounces = Paths::new(room, Bounces::Exactly(2), Hemisphere::Cosine, FindLight::BySampling)?;
+/// let found = estimate(&two_bounces, Budget::Draws(100_000), 1)?;
+/// assert!(found.z(0.039903921548169116).unwrap().abs() < 5.0);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Paths {
+    room: BoxRoom,
+    /// The fewest and the most bounces that count.
+    counted: [u32; 2],
+    ending: Ending,
+    directions: Hemisphere,
+    light: FindLight,
+}
+
+/// What ends a path before its bounces do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Ending {
+    Never,
+    Roulette(Roulette),
+    ByWeight,
+}
+
+impl Paths {
+    /// Paths from the room's point p.
+    ///
+    /// # Errors
+    /// If there are more than [`MOST_BOUNCES`] to be counted; if q is not in (0, 0.9999\], for at 1 a path would never end; or if paths end by their
+    /// weight and an albedo is above 0.999, where they hardly would.
+    pub fn new(room: BoxRoom, bounces: Bounces, directions: Hemisphere, light: FindLight) -> Result<Self> {
+        let count = |k: u32| {
+            require_count(
+                "the number of bounces",
+                k.into(),
+                k <= MOST_BOUNCES,
+                "at most 64 (without a limit, roulette ends the paths)",
+            )
+        };
+        let (counted, ending) = match bounces {
+            Bounces::Exactly(k) => {
+                count(k)?;
+                ([k, k], Ending::Never)
+            }
+            Bounces::UpTo(k) => {
+                count(k)?;
+                ([0, k], Ending::Never)
+            }
+            Bounces::All(q) => {
+                require(
+                    Q,
+                    q,
+                    q > 0.0 && q <= MOST_Q,
+                    "above 0 and at most 0.9999, where a path has ten thousand bounces",
+                )?;
+                ([0, u32::MAX], Ending::Roulette(Roulette::new(q)?))
+            }
+            Bounces::AllByWeight => {
+                let albedo = most_albedo(&room);
+                let allowed = "at most 0.999 where nothing but absorption ends a path (or choose a q)";
+                require("the largest albedo", albedo, albedo <= MOST_ALBEDO, allowed)?;
+                ([0, u32::MAX], Ending::ByWeight)
+            }
+        };
+        Ok(Self { room, counted, ending, directions, light })
+    }
+
+    /// The scene.
+    pub fn room(&self) -> &BoxRoom {
+        &self.room
+    }
+
+    /// Why the variance may be infinite, if it may: its error bars are then not to be trusted.
+    ///
+    /// A path's squared weight grows by E\[(ρ cos θ/(π p(ω)))²\]/q a bounce, times the q of going on: ρ²/q with cosine directions, (4/3)ρ²/q with uniform ones. It must
+    /// stay below 1 for the largest albedo ρ to be safe. And light samples near the light's edge have an infinite variance where the light touches a wall.
+    pub fn caution(&self) -> Option<String> {
+        let albedo = most_albedo(&self.room);
+        let (spread, shown) = match self.directions {
+            Hemisphere::Cosine => (1.0, "ρ²"),
+            Hemisphere::Uniform => (4.0 / 3.0, "(4/3)ρ²"),
+        };
+        let growth = spread * albedo * albedo;
+        let q = match self.ending {
+            Ending::Never => None,
+            Ending::Roulette(roulette) => Some(roulette.p_rr()),
+            // cosine's weights never exceed 1 then, and uniform ones grow while they do
+            Ending::ByWeight => (self.directions == Hemisphere::Uniform).then_some(1.0),
+        };
+        let touches = self.room.scene().light_half_width >= 2.0 && self.light == FindLight::BySampling;
+        match q {
+            Some(q) if q <= growth => Some(format!(
+                "the variance may be infinite, and the error bar too short: q = {q} is not above {shown} = {growth:.4} for the largest albedo"
+            )),
+            _ if touches && self.counted[1] > 1 => Some(
+                "the variance may be infinite, and the error bar too short: the light touches the walls, where its samples weigh without bound".into(),
+            ),
+            _ => None,
+        }
+    }
+
+    /// An unbiased estimate of the light that leaves `vertex`, along one random path: L̂_o(p_j) to plug in for [`reflected`].
+    #[inline]
+    pub fn light_from(&self, vertex: &Vertex, rng: &mut Stream) -> f64 {
+        self.walk(vertex, rng, |_| ())
+    }
+
+    /// One path with its vertices, for drawing: the same that [`draw`](Estimator::draw) takes from the same stream.
+    pub fn trace(&self, rng: &mut Stream) -> Path {
+        let mut path = Path { vertices: Vec::new(), samples: Vec::new(), light: 0.0 };
+        path.light = self.walk(&self.room.point(), rng, |event| match event {
+            Event::Vertex(vertex) => path.vertices.push(*vertex),
+            Event::Light { point, visible } => {
+                path.samples.push(Sample { from: path.vertices.len().saturating_sub(1), point, visible });
+            }
+        });
+        path
+    }
+
+    /// Follows one path from `start`, and adds up the light that it finds.
+    #[inline]
+    fn walk(&self, start: &Vertex, rng: &mut Stream, mut see: impl FnMut(Event<'_>)) -> f64 {
+        let [fewest, most] = self.counted;
+        let sampled = self.light == FindLight::BySampling && self.room.scene().light_half_width > 0.0;
+        // once the light was sampled for the last time, only what the faces emit is left to be found
+        let last = if sampled && self.room.scene().emission == 0.0 { most.saturating_sub(1) } else { most };
+        let (mut vertex, mut weight, mut light, mut bounces) = (*start, 1.0, 0.0, 0);
+        loop {
+            see(Event::Vertex(&vertex));
+            let found_already = sampled && bounces > 0 && self.room.is_light(&vertex);
+            if bounces >= fewest && !found_already {
+                light += weight * self.room.emitted(&vertex);
+            }
+            let albedo = self.room.albedo(&vertex);
+            if bounces >= most || albedo == 0.0 {
+                break;
+            }
+            if sampled && bounces + 1 >= fewest {
+                let sample = self.room.sample_light(&vertex, rng);
+                see(Event::Light { point: sample.point, visible: sample.visible });
+                light += weight * albedo * std::f64::consts::FRAC_1_PI * sample.irradiance;
+            }
+            if bounces >= last {
+                break;
+            }
+            let direction = self.directions.sample(rng);
+            weight *= albedo * self.cosine_over_pdf(&direction);
+            match self.ending {
+                Ending::Never => {}
+                Ending::Roulette(roulette) => {
+                    if !roulette.continues(rng) {
+                        break;
+                    }
+                    weight /= roulette.p_rr();
+                }
+                Ending::ByWeight if weight < 1.0 => {
+                    if !coin(rng, weight) {
+                        break;
+                    }
+                    weight = 1.0;
+                }
+                Ending::ByWeight => {}
+            }
+            rng.count_evaluations(1);
+            vertex = nearest(vertex.position(), vertex.to_room(&direction));
+            bounces = bounces.saturating_add(1);
+            if weight == 0.0 {
+                break; // too small for f64: nothing is added from here on
+            }
+        }
+        light
+    }
+
+    /// cos θ/(π p(ω)), what is left of f_r cos θ/p(ω) beside the albedo: 1 for cosine directions, 2 cos θ for uniform ones.
+    #[inline]
+    fn cosine_over_pdf(&self, direction: &Direction) -> f64 {
+        match self.directions {
+            Hemisphere::Cosine => 1.0,
+            Hemisphere::Uniform => 2.0 * direction.cos_theta(),
+        }
+    }
+
+    /// The rays of a long path, roughly.
+    fn work(&self) -> f64 {
+        let rays = match self.ending {
+            Ending::Never => f64::from(self.counted[1]),
+            Ending::Roulette(roulette) => 1.0 / (1.0 - roulette.p_rr()),
+            Ending::ByWeight => 1.0 / (1.0 - most_albedo(&self.room)),
+        };
+        10.0 * (1.0 + rays)
+    }
+}
+
+impl Estimator for Paths {
+    #[inline]
+    fn draw(&self, rng: &mut Stream) -> f64 {
+        self.light_from(&self.room.point(), rng)
+    }
+
+    fn draws_per_block(&self) -> u64 {
+        draws_for(self.work())
+    }
+}
+
+const Q: &str = "the continuation probability q";
+
+fn most_albedo(room: &BoxRoom) -> f64 {
+    room.scene().wall_albedo.max(room.scene().cube_albedo)
+}
+
+/// What a path meets on its way.
+enum Event<'a> {
+    Vertex(&'a Vertex),
+    Light { point: DVec3, visible: bool },
+}
+
+/// A path that was followed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path {
+    /// Its vertices, from p on; the last one may be on the light.
+    pub vertices: Vec<Vertex>,
+    /// The points of the light that were drawn on the way.
+    pub samples: Vec<Sample>,
+    /// The light that it found, weighted: the draw.
+    pub light: f64,
+}
+
+/// A point drawn on the light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// The index of the vertex that it was drawn for.
+    pub from: usize,
+    /// Where it is.
+    pub point: DVec3,
+    /// Whether that vertex sees it.
+    pub visible: bool,
+}
+
+/// The estimator of 4.3, f_r L̂_o(p_j) cos θ/p(ω): light that comes to p from the points p_j it sees, in directions drawn from `directions`.
+///
+/// `outgoing` is L_o(p_j, −ω), or any unbiased estimate of it that takes its random numbers from the stream. With [`BoxRoom::direct`] it is
+/// the part of two bounces, without any variance from p_j on.
+///
+/// ```
+/// use unbiased::box_room::{BoxRoom, Scene};
+/// use unbiased::hemisphere::Hemisphere;
+/// use unbiased::paths::{Bounces, FindLight, Paths, reflected};
+/// use unbiased::{Budget, estimate};
+///
+/// let room = BoxRoom::new(Scene::default())?;
+/// // seen from the cube's top, nothing hides the light from any p_j
+/// let exact = reflected(room, Hemisphere::Cosine, |p_j, _| room.direct(p_j));
+/// let once = Paths::new(room, Bounces::Exactly(1), Hemisphere::Cosine, FindLight::BySampling)?;
+/// let estimated = reflected(room, Hemisphere::Cosine, |p_j, rng| once.light_from(p_j, rng));
+/// for estimator in [&exact as &dyn unbiased::Estimator, &estimated] {
+///     let found = estimate(estimator, Budget::Draws(100_000), 1)?;
+///     assert!(found.z(0.039903921548169116).unwrap().abs() < 5.0);
+/// }
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+pub fn reflected<L>(room: BoxRoom, directions: Hemisphere, outgoing: L) -> impl Estimator
+where
+    L: Fn(&Vertex, &mut Stream) -> f64 + Sync,
+{
+    let p = room.point();
+    let brdf = room.albedo(&p) * std::f64::consts::FRAC_1_PI;
+    from_fn(move |rng| {
+        let direction = directions.sample(rng);
+        rng.count_evaluations(1);
+        let p_j = nearest(p.position(), p.to_room(&direction));
+        brdf * outgoing(&p_j, rng) * direction.cos_theta() / directions.pdf(&direction)
+    })
+}
