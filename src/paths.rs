@@ -151,6 +151,11 @@ impl Paths {
         &self.room
     }
 
+    /// The most bounces that are counted.
+    pub fn most_bounces(&self) -> u32 {
+        self.counted[1]
+    }
+
     /// Why the variance may be infinite, if it may: its error bars are then not to be trusted.
     ///
     /// A path's squared weight grows by E\[(ρ cos θ/(π p(ω)))²\]/q a bounce, times the q of going on: ρ²/q with cosine directions, (4/3)ρ²/q with uniform ones. It must

@@ -24,6 +24,12 @@ mod q3_4;
 mod q3_5;
 #[path = "../q3_6_variance.rs"]
 mod q3_6;
+#[path = "../q4_1_two_bounces.rs"]
+mod q4_1;
+#[path = "../q4_2_three_bounces.rs"]
+mod q4_2;
+#[path = "../q4_3_paths.rs"]
+mod q4_3;
 #[path = "../q5_1_bounces.rs"]
 mod q5_1;
 #[path = "../q5_2_few_bounces.rs"]
@@ -43,6 +49,9 @@ fn main() -> ExitCode {
         ("3.4", q3_4::answer),
         ("3.5", q3_5::answer),
         ("3.6", q3_6::answer),
+        ("4.1", q4_1::answer),
+        ("4.2", q4_2::answer),
+        ("4.3", q4_3::answer),
         ("5.1", q5_1::answer),
         ("5.2", q5_2::answer),
         ("5.3", q5_3::answer),

@@ -13,6 +13,7 @@ use glam::DVec3;
 use crate::error::{Result, require};
 use crate::stream::Stream;
 
+mod exact;
 mod face;
 mod polygon;
 mod ray;

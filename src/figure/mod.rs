@@ -6,16 +6,21 @@
 
 mod check;
 mod inversion;
+mod labels;
 mod lambertian;
+mod paths;
 mod plot;
 mod rectangle;
 mod render;
+mod room;
 mod roulette;
 
 pub use check::{mistakes, wealth};
 pub use inversion::{empirical_cdf, exponential, tails};
 pub use lambertian::{directions, integrand, variance_against_exponent, variance_against_ring};
+pub use paths::{occluded_fraction, path_errors, radiance_by_bounces, two_bounces_converging};
 pub use rectangle::{running_means, sampling_errors};
+pub use room::paths_drawn;
 pub use roulette::{bounces, mean_bounces, roulette_trade, truncation};
 
 use std::fmt::Write as _;

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use super::Value;
+use crate::box_room::Scene;
 use crate::estimate::Estimate;
 use crate::figure::{Edition, Figure};
 use crate::run::{Cost, Outcome};
@@ -22,7 +24,7 @@ pub struct Answer {
     question: String,
     what: String,
     kind: Kind,
-    parameters: Vec<(&'static str, f64)>,
+    parameters: Vec<(&'static str, Value)>,
     truth: Option<f64>,
     value: Option<f64>,
     estimate: Option<Estimate>,
@@ -59,9 +61,18 @@ impl Answer {
     }
 
     /// A parameter that it was computed with.
-    pub fn parameter(mut self, name: &'static str, value: f64) -> Self {
-        self.parameters.push((name, value));
+    pub fn parameter(mut self, name: &'static str, value: impl Into<Value>) -> Self {
+        self.parameters.push((name, value.into()));
         self
+    }
+
+    /// The numbers of the box room that it was computed in.
+    pub fn scene(self, scene: &Scene) -> Self {
+        self.parameter("wall_albedo", scene.wall_albedo)
+            .parameter("cube_albedo", scene.cube_albedo)
+            .parameter("radiance", scene.radiance)
+            .parameter("light_half_width", scene.light_half_width)
+            .parameter("point", scene.point)
     }
 
     /// The closed form's value.
@@ -135,7 +146,7 @@ impl Answer {
         Some(self.z()?.abs() <= 4.0)
     }
 
-    pub(super) fn parameters(&self) -> &[(&'static str, f64)] {
+    pub(super) fn parameters(&self) -> &[(&'static str, Value)] {
         &self.parameters
     }
 

@@ -25,13 +25,16 @@ mod print;
 mod section1;
 mod section2;
 mod section3;
+mod section4;
 mod section5;
+mod value;
 
 use std::process::ExitCode;
 
 pub use answer::{Answer, Kind};
 pub use check_mine::check_mine;
 pub use options::Options;
+pub use value::Value;
 
 use crate::error::{Error, Result};
 use crate::figure::{Edition, write_whole};
@@ -77,20 +80,27 @@ pub struct Wrong {
     pub slip: &'static str,
 }
 
-/// A numeric option of one question: `--name value`.
+/// An option of one question: `--name value`.
 #[derive(Debug, Clone, Copy)]
 pub struct Parameter {
     /// Its name on the command line, without the dashes.
     pub name: &'static str,
     /// Its value where none is given.
-    pub default: f64,
+    pub default: Value,
     /// What it is, with its domain.
     pub help: &'static str,
 }
 
 /// All questions, in the worksheet's order.
 pub fn questions() -> impl Iterator<Item = &'static Question> {
-    [section1::QUESTIONS, section2::QUESTIONS, section3::QUESTIONS, section5::QUESTIONS].into_iter().flatten()
+    let sections = [
+        section1::QUESTIONS,
+        section2::QUESTIONS,
+        section3::QUESTIONS,
+        section4::QUESTIONS,
+        section5::QUESTIONS,
+    ];
+    sections.into_iter().flatten()
 }
 
 /// The question with this number.

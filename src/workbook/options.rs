@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use lexopt::{Arg, Parser};
 
-use super::{Answer, Question, print};
+use super::{Answer, Question, Value, print};
+use crate::box_room::Scene;
 use crate::error::{Error, Result};
 use crate::figure::Edition;
 use crate::run::{Budget, Estimator, Outcome, Run};
@@ -28,7 +29,7 @@ pub struct Options {
     pub json: bool,
     /// For whom.
     pub edition: Edition,
-    given: Vec<(String, f64)>,
+    given: Vec<(String, Value)>,
     question: Option<&'static Question>,
 }
 
@@ -87,13 +88,14 @@ impl Request {
                 "out" => options.out = line.value().map_err(usage)?.into(),
                 "edition" => options.edition = edition(&text(&mut line, "--edition")?)?,
                 _ => {
-                    let known = questions.iter().flat_map(|question| question.parameters);
-                    if !known.into_iter().any(|parameter| parameter.name == name) {
+                    let mut known = questions.iter().flat_map(|question| question.parameters);
+                    let Some(parameter) = known.find(|parameter| parameter.name == name) else {
                         return Err(Error::Usage(format!("there is no option --{name}; --help lists them")));
-                    }
+                    };
                     let given = text(&mut line, &format!("--{name}"))?;
-                    let value = number(&given)
-                        .ok_or_else(|| Error::Usage(format!("--{name} takes a number, not \"{given}\"")))?;
+                    let value = parameter.default.read_alike(&given).ok_or_else(|| {
+                        Error::Usage(format!("--{name} takes {}, not \"{given}\"", parameter.default.kind()))
+                    })?;
                     options.given.push((name, value));
                 }
             }
@@ -124,14 +126,6 @@ pub(super) fn count(line: &mut Parser, name: &str) -> Result<u64> {
     }
 }
 
-/// A number or a fraction of two: `0.8`, `4/5`.
-fn number(text: &str) -> Option<f64> {
-    match text.split_once('/') {
-        Some((above, below)) => Some(above.parse::<f64>().ok()? / below.parse::<f64>().ok()?),
-        None => text.parse().ok(),
-    }
-}
-
 fn edition(name: &str) -> Result<Edition> {
     match name {
         "student" => Ok(Edition::Student),
@@ -146,18 +140,51 @@ impl Options {
         Self { question: Some(question), ..self.clone() }
     }
 
-    /// The value of the question's own option `name`: as given, or its default. NaN if the question has no such option.
-    pub fn number(&self, name: &str) -> f64 {
+    /// The value of the question's own option `name`: as given, or its default.
+    fn value(&self, name: &str) -> Option<Value> {
         let given = self.given.iter().rev().find(|(given, _)| given == name);
         let parameters = self.question.map_or(&[][..], |question| question.parameters);
         let default = || parameters.iter().find(|parameter| parameter.name == name);
-        given
-            .map(|(_, value)| *value)
-            .or_else(|| default().map(|parameter| parameter.default))
-            .unwrap_or(f64::NAN)
+        given.map(|(_, value)| *value).or_else(|| default().map(|parameter| parameter.default))
     }
 
-    /// The same where only a whole number ≥ 0 will do.
+    /// The number of the question's own option `name`: as given, or its default. NaN if the question has no such option.
+    pub fn number(&self, name: &str) -> f64 {
+        match self.value(name) {
+            Some(Value::Number(number)) => number,
+            _ => f64::NAN,
+        }
+    }
+
+    /// The same of an option that is a count or "all", which is None. None, too, if the question has no such option.
+    pub fn limit(&self, name: &str) -> Option<u32> {
+        match self.value(name) {
+            Some(Value::Limit(limit)) => limit,
+            _ => None,
+        }
+    }
+
+    /// The same of an option that is a point. NaN if the question has no such option.
+    pub fn point(&self, name: &str) -> [f64; 3] {
+        match self.value(name) {
+            Some(Value::Point(point)) => point,
+            _ => [f64::NAN; 3],
+        }
+    }
+
+    /// The box room that section 4's options describe.
+    pub fn scene(&self) -> Scene {
+        Scene {
+            wall_albedo: self.number("wall-albedo"),
+            cube_albedo: self.number("cube-albedo"),
+            radiance: self.number("radiance"),
+            light_half_width: self.number("light-half-width"),
+            point: self.point("point"),
+            ..Scene::default()
+        }
+    }
+
+    /// The number of an option where only a whole one ≥ 0 will do.
     ///
     /// # Errors
     /// If it is anything else.
@@ -214,16 +241,15 @@ impl Options {
     /// that repeats the answer.
     pub(super) fn varied<'a>(&self, answers: impl IntoIterator<Item = &'a Answer>) -> Vec<&'static str> {
         let parameters = answers.into_iter().flat_map(Answer::parameters);
-        let as_given = |name: &str, value: f64| (self.number(&name.replace('_', "-")) - value).abs() <= 0.0;
+        let as_given = |name: &str, value: Value| self.value(&name.replace('_', "-")) == Some(value);
         parameters.filter(|(name, value)| !as_given(name, *value)).map(|(name, _)| *name).collect()
     }
 
     /// The question's own options that are not at their defaults: `u = 0.3`.
     pub(super) fn own(&self, question: &Question) -> String {
         let changed = question.parameters.iter().filter_map(|parameter| {
-            let value = self.number(parameter.name);
-            let as_asked = (value - parameter.default).abs() <= 0.0;
-            (!as_asked).then(|| format!("{} = {}", parameter.name, print::shortened(value)))
+            let value = self.value(parameter.name)?;
+            (value != parameter.default).then(|| format!("{} = {}", parameter.name, value.shortened()))
         });
         changed.collect::<Vec<_>>().join(", ")
     }
@@ -232,7 +258,8 @@ impl Options {
     pub(super) fn command(&self, question: &Question) -> String {
         let mut command = format!("cargo run --release --example {} --", question.example);
         for parameter in question.parameters {
-            command += &format!(" --{} {}", parameter.name, self.number(parameter.name));
+            let value = self.value(parameter.name).unwrap_or(parameter.default);
+            command += &format!(" --{} {value}", parameter.name);
         }
         if let Some(draws) = self.draws {
             command += &format!(" --draws {draws}");

@@ -125,7 +125,7 @@ fn numbers(answers: &[&Answer], options: &Options) -> Markup {
                         tr class=(if answer.agrees().is_none() && answer.estimate().is_some() { "demonstration" } else { "" }) {
                             td { (answer.question()) }
                             td { (prose(answer.what()))
-                                @for (name, value) in answer.parameters().iter().filter(|(name, _)| varied.contains(name)) { ", " (name) " = " (print::shortened(*value)) } }
+                                @for (name, value) in answer.parameters().iter().filter(|(name, _)| varied.contains(name)) { ", " (name) " = " (value.shortened()) } }
                             td.number { @if let Some(truth) = answer.exact() { (print::shortened(truth)) } }
                             td.number {
                                 @if answer.estimate().is_some() { (print::interval(answer)) }

@@ -64,7 +64,7 @@ struct Row<'a> {
 fn json(question: &Question, answer: &Answer, figures: &[PathBuf], options: &Options) -> io::Result<()> {
     let told = options.edition == Edition::Solution;
     let estimate = answer.estimate().filter(|_| told);
-    let parameters = answer.parameters().iter().map(|(name, value)| ((*name).into(), (*value).into()));
+    let parameters = answer.parameters().iter().map(|(name, value)| ((*name).into(), value.json()));
     let row = Row {
         question: answer.question(),
         what: if told { answer.what() } else { question.title },
@@ -111,7 +111,7 @@ fn text(question: &Question, rows: &[(&Answer, Vec<PathBuf>)], options: &Options
 fn solution(out: &mut impl Write, answer: &Answer, varied: &[&str]) -> io::Result<()> {
     write!(out, "    {}  {}", answer.question(), answer.what())?;
     for (name, value) in answer.parameters().iter().filter(|(name, _)| varied.contains(name)) {
-        write!(out, ", {name} = {}", shortened(*value))?;
+        write!(out, ", {name} = {}", value.shortened())?;
     }
     writeln!(out)?;
     if let Some(truth) = answer.exact() {
@@ -213,7 +213,7 @@ pub(super) fn help(questions: &[&Question]) -> Result<()> {
 ";
     for question in questions {
         for parameter in question.parameters {
-            let option = format!("--{} X", parameter.name);
+            let option = format!("--{} {}", parameter.name, parameter.default.placeholder());
             let owner = if questions.len() > 1 { format!("{}: ", question.id) } else { String::new() };
             text += &format!("    {option:<20} {owner}{} ({})\n", parameter.help, parameter.default);
         }

@@ -1,8 +1,8 @@
 //! The questions of section 1, the inversion method.
 
-use super::{Parameter, Question, Wrong};
+use super::{Parameter, Question, Value, Wrong};
 
-const RATE: Parameter = Parameter { name: "rate", default: 1.0, help: "the rate λ > 0" };
+const RATE: Parameter = Parameter { name: "rate", default: Value::Number(1.0), help: "the rate λ > 0" };
 
 pub(super) const QUESTIONS: &[Question] = &[
     Question {
@@ -63,7 +63,10 @@ pub(super) const QUESTIONS: &[Question] = &[
         ),
         example: "q1_2_one_sample",
         module: "inversion",
-        parameters: &[RATE, Parameter { name: "u", default: 0.75, help: "the uniform number u in [0, 1]" }],
+        parameters: &[
+            RATE,
+            Parameter { name: "u", default: Value::Number(0.75), help: "the uniform number u in [0, 1]" },
+        ],
     },
     Question {
         id: "1.3",

@@ -1,9 +1,9 @@
 //! The questions of section 2, unbiased estimators.
 
-use super::{Parameter, Question, Wrong};
+use super::{Parameter, Question, Value, Wrong};
 
 const fn end(name: &'static str, default: f64, help: &'static str) -> Parameter {
-    Parameter { name, default, help }
+    Parameter { name, default: Value::Number(default), help }
 }
 
 pub(super) const QUESTIONS: &[Question] = &[Question {

@@ -1,12 +1,17 @@
 //! The questions of section 3, the diffuse cube.
 
-use super::{Parameter, Question, Wrong};
+use super::{Parameter, Question, Value, Wrong};
 
-const ALBEDO: Parameter = Parameter { name: "albedo", default: 0.8, help: "the albedo ρ in [0, 1]" };
+const ALBEDO: Parameter =
+    Parameter { name: "albedo", default: Value::Number(0.8), help: "the albedo ρ in [0, 1]" };
 const RADIANCE: Parameter =
-    Parameter { name: "radiance", default: 1.0, help: "the incoming radiance, in W m⁻² sr⁻¹" };
+    Parameter {
+        name: "radiance", default: Value::Number(1.0), help: "the incoming radiance, in W m⁻² sr⁻¹"
+    };
 const A: Parameter =
-    Parameter { name: "a", default: 1.0, help: "the exponent of the light cos^a θ, above -2" };
+    Parameter {
+        name: "a", default: Value::Number(1.0), help: "the exponent of the light cos^a θ, above -2"
+    };
 
 pub(super) const QUESTIONS: &[Question] = &[
     Question {
@@ -180,7 +185,7 @@ pub(super) const QUESTIONS: &[Question] = &[
             A,
             Parameter {
                 name: "width",
-                default: 0.1,
+                default: Value::Number(0.1),
                 help: "the width ε of the ring of light cos θ ≤ ε, in (0, 1]",
             },
         ],

@@ -1,12 +1,15 @@
 //! The questions of section 5, Russian roulette.
 
-use super::{Parameter, Question, Wrong};
+use super::{Parameter, Question, Value, Wrong};
 
-const ALBEDO: Parameter =
-    Parameter { name: "albedo", default: 0.8, help: "the albedo ρ of every vertex, in [0, 1)" };
+const ALBEDO: Parameter = Parameter {
+    name: "albedo",
+    default: Value::Number(0.8),
+    help: "the albedo ρ of every vertex, in [0, 1)",
+};
 const VISIBILITY: Parameter = Parameter {
     name: "visibility",
-    default: 0.5,
+    default: Value::Number(0.5),
     help: "the probability v that a vertex sees the light, in [0, 1]",
 };
 
@@ -38,7 +41,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         module: "roulette",
         parameters: &[Parameter {
             name: "p-rr",
-            default: 0.8,
+            default: Value::Number(0.8),
             help: "the continuation probability p_rr in (0, 1)",
         }],
     },
@@ -60,7 +63,11 @@ pub(super) const QUESTIONS: &[Question] = &[
         example: "q5_2_few_bounces",
         module: "roulette",
         parameters: &[
-            Parameter { name: "p-rr", default: 0.2, help: "the continuation probability p_rr in (0, 1)" },
+            Parameter {
+                name: "p-rr",
+                default: Value::Number(0.2),
+                help: "the continuation probability p_rr in (0, 1)",
+            },
             ALBEDO,
             VISIBILITY,
         ],
@@ -95,12 +102,16 @@ pub(super) const QUESTIONS: &[Question] = &[
         parameters: &[
             Parameter {
                 name: "p-rr",
-                default: 0.8,
+                default: Value::Number(0.8),
                 help: "the continuation probability q of the paths, in (0, 1)",
             },
             ALBEDO,
             VISIBILITY,
-            Parameter { name: "max-k", default: 8.0, help: "the last vertex of truncated paths" },
+            Parameter {
+                name: "max-k",
+                default: Value::Number(8.0),
+                help: "the last vertex of truncated paths",
+            },
         ],
     },
 ];

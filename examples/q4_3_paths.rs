@@ -1,0 +1,83 @@
+//! Question 4.3: the estimator for paths.
+//!
+//! L̂_o(p) = 1/n Σ f_r L_o(p_j) cos θ/p(ω) is 3.4's estimator with the light taken from where it left. With the exact L_o(p_j) of the light reflected once it gives the two-bounce part; with an
+//! unbiased estimate of it, too; and if that estimate goes on in the same way, more bounces. The truths of one and two bounces are exact.
+
+use std::process::ExitCode;
+
+use unbiased::box_room::BoxRoom;
+use unbiased::hemisphere::Hemisphere::{Cosine, Uniform};
+use unbiased::paths::{Bounces, FindLight, Paths, reflected};
+use unbiased::workbook::{self, Answer, Options};
+use unbiased::{Estimator, Result, figure};
+
+/// The answers, as the options ask.
+pub fn answer(options: &Options) -> Result<Vec<Answer>> {
+    let room = BoxRoom::new(options.scene())?;
+    let bounces = options.limit("bounces");
+    let exact = [room.one_bounce(), room.two_bounces()]; // after one bounce, and after two
+
+    let mut drawings = Answer::new("4.3", "paths in the room")
+        .figure(figure::two_bounces_converging(&room, options.seed)?)
+        .figure(figure::occluded_fraction(200_000, options.seed)?)
+        .figure(figure::radiance_by_bounces(&room, options.seed)?);
+    for figure in figure::path_errors(&room, options.seed)? {
+        drawings = drawings.figure(figure);
+    }
+    let mut answers = vec![drawings];
+    let mut add =
+        |what: &str, estimator: &dyn Estimator, truth: Option<f64>, caution: Option<String>| -> Result<()> {
+            let mut row = Answer::new("4.3", what).outcome(&options.run(estimator, 1_000_000)?);
+            if let Some(truth) = truth {
+                row = row.truth(truth);
+            }
+            if let Some(caution) = caution {
+                row = row.note(format!("Careful: {caution}.")).demonstration();
+            }
+            answers.push(row.scene(room.scene()).parameter("bounces", bounces));
+            Ok(())
+        };
+
+    if let Some(k) = bounces {
+        let truth = if k == 0 { Some(0.0) } else { exact.get(k as usize - 1).copied().flatten() };
+        let once_less = |light| Paths::new(room, Bounces::Exactly(k.saturating_sub(1)), Cosine, light);
+        if k == 2 && exact[1].is_some() {
+            // the sheet's estimator as it stands, with L_o(p_j) known
+            let known = reflected(room, Cosine, |p_j, _| room.direct(p_j));
+            add("K-bounce part, L_o(p_j) known", &known, truth, None)?;
+        }
+        if k > 0 {
+            let paths = once_less(FindLight::BySampling)?;
+            let estimated = reflected(room, Uniform, |p_j, rng| paths.light_from(p_j, rng));
+            add("K-bounce part, L_o(p_j) estimated", &estimated, truth, None)?;
+        }
+        for (what, directions, light) in [
+            ("K-bounce part, light sampled, cosine directions", Cosine, FindLight::BySampling),
+            ("K-bounce part, light sampled, uniform directions", Uniform, FindLight::BySampling),
+            ("K-bounce part, light by chance, cosine directions", Cosine, FindLight::ByChance),
+            ("K-bounce part, light by chance, uniform directions", Uniform, FindLight::ByChance),
+        ] {
+            let paths = Paths::new(room, Bounces::Exactly(k), directions, light)?;
+            add(what, &paths, truth, paths.caution())?;
+        }
+        let all_known = exact.iter().take(k as usize).copied().sum::<Option<f64>>();
+        let truth = if k <= 2 { all_known } else { None };
+        let paths = Paths::new(room, Bounces::UpTo(k), Cosine, FindLight::BySampling)?;
+        add("cumulative", &paths, truth, paths.caution())?;
+    } else {
+        for (what, bounces) in [
+            ("cumulative", Bounces::AllByWeight),
+            ("all light, roulette with q = 0.8", Bounces::All(0.8)),
+            ("all light, roulette with q = 0.5", Bounces::All(0.5)),
+        ] {
+            let paths = Paths::new(room, bounces, Cosine, FindLight::BySampling)?;
+            add(what, &paths, None, paths.caution())?;
+        }
+    }
+    Ok(answers)
+}
+
+#[allow(dead_code)] // the worksheet takes this file in as a module
+fn main() -> ExitCode {
+    workbook::main("4.3", answer)
+}

@@ -1,0 +1,122 @@
+//! Where labels go in a drawing: beside their points, off the lines and off each other.
+
+use super::plot::{Ink, Panel, Side};
+
+/// A rectangle around a middle, in the drawing's units.
+#[derive(Debug, Clone, Copy)]
+struct Box2 {
+    middle: [f64; 2],
+    half: [f64; 2],
+}
+
+impl Box2 {
+    /// How much of two rectangles overlaps.
+    fn overlap(&self, other: &Self) -> f64 {
+        let along = |axis: usize| {
+            let (Some(a), Some(b)) = (self.side(axis), other.side(axis)) else { return 0.0 };
+            (a[1].min(b[1]) - a[0].max(b[0])).max(0.0)
+        };
+        along(0) * along(1)
+    }
+
+    fn side(&self, axis: usize) -> Option<[f64; 2]> {
+        let (middle, half) = (self.middle.get(axis)?, self.half.get(axis)?);
+        Some([middle - half, middle + half])
+    }
+
+    /// Whether a segment passes through.
+    fn is_crossed(&self, [from, to]: [[f64; 2]; 2]) -> bool {
+        let (mut enters, mut leaves) = (0.0f64, 1.0f64);
+        for (((start, end), middle), half) in from.into_iter().zip(to).zip(self.middle).zip(self.half) {
+            let step = end - start;
+            let (low, high) = (middle - half - start, middle + half - start);
+            if step == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return false;
+                }
+            } else {
+                let (a, b) = (low / step, high / step);
+                enters = enters.max(a.min(b));
+                leaves = leaves.min(a.max(b));
+            }
+        }
+        enters <= leaves
+    }
+}
+
+/// Labels of one drawing, placed one after the other where they are least in the way.
+pub(super) struct Labels {
+    /// how many points of print a unit is
+    scale: f64,
+    bounds: Box2,
+    lines: Vec<[[f64; 2]; 2]>,
+    placed: Vec<Box2>,
+}
+
+impl Labels {
+    /// For a drawing from `low` to `high`, a unit of which is printed `scale` points wide.
+    pub fn new(low: [f64; 2], high: [f64; 2], scale: f64) -> Self {
+        let middle = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
+        let bounds = Box2 { middle, half: [high[0] - middle[0], high[1] - middle[1]] };
+        Self { scale, bounds, lines: Vec::new(), placed: Vec::new() }
+    }
+
+    /// Keeps labels off the lines through these points.
+    pub fn avoid(&mut self, points: &[[f64; 2]]) {
+        self.lines.extend(points.windows(2).filter_map(|pair| <[[f64; 2]; 2]>::try_from(pair).ok()));
+    }
+
+    /// Puts a text beside `at`.
+    pub fn place(&mut self, panel: &mut Panel, ink: Ink, at: [f64; 2], text: &str) {
+        // at 8 points a letter is about 5.2 wide, a raised or lowered one about 3.4
+        let width =
+            |c: char| if "₀₁₂₃₄₅₆₇₈₉ₒᵢⱼ′".contains(c) { 3.4 } else { 5.2 };
+        let half = [0.5 * text.chars().map(width).sum::<f64>() / self.scale, 4.6 / self.scale];
+        let mut best: Option<(f64, Box2)> = None;
+        for ring in 0..5 {
+            for step in 0..24 {
+                let angle = f64::from(step) * std::f64::consts::TAU / 24.0;
+                let gap = (3.0 + 4.0 * f64::from(ring)) / self.scale;
+                let middle = [at[0] + angle.cos() * (half[0] + gap), at[1] + angle.sin() * (half[1] + gap)];
+                let candidate = Box2 { middle, half };
+                let cost = self.cost(&candidate) + 0.25 * f64::from(ring);
+                if best.is_none_or(|(least, _)| cost < least) {
+                    best = Some((cost, candidate));
+                }
+            }
+        }
+        if let Some((_, label)) = best {
+            panel.text(ink, label.middle, Side::Centre, text);
+            self.placed.push(label);
+        }
+    }
+
+    fn cost(&self, label: &Box2) -> f64 {
+        let crossed = self.lines.iter().filter(|line| label.is_crossed(**line)).count();
+        let covered: f64 = self.placed.iter().map(|placed| placed.overlap(label)).sum();
+        let whole = 4.0 * label.half[0] * label.half[1];
+        let outside = 1.0 - label.overlap(&self.bounds) / whole;
+        crossed as f64 + 20.0 * covered / whole + 100.0 * outside
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn segments_cross_boxes_or_do_not() {
+        let label = Box2 { middle: [1.0, 1.0], half: [0.5, 0.25] };
+        for (segment, crossed) in [
+            ([[0.0, 1.0], [2.0, 1.0]], true),
+            ([[0.0, 0.0], [2.0, 2.0]], true),
+            ([[1.0, 1.1], [1.1, 1.0]], true),
+            ([[0.0, 1.5], [2.0, 1.5]], false),
+            ([[0.0, 1.0], [0.4, 1.0]], false),
+            ([[0.0, 0.0], [0.0, 2.0]], false),
+            ([[1.0, 0.0], [1.0, 2.0]], true),
+        ] {
+            assert_eq!(label.is_crossed(segment), crossed, "{segment:?}");
+        }
+    }
+}
