@@ -32,6 +32,7 @@
 //! | 1 The inversion method | [`inversion`] | the exponential distribution, and the inversion of any one-dimensional cdf |
 //! | 2 Unbiased estimators | [`rectangle`] | independent pairs, all n² pairs, jittered and Sobol points on any rectangle |
 //! | 3 The diffuse cube | [`hemisphere`], [`lambertian`] | uniform and cosine directions, a Lambertian surface, lights with exact variances |
+//! | 4 Paths | [`box_room`], [`paths`] | the one scene, its closed forms, and paths of k, up to K, or all bounces through it |
 //! | 5 Russian roulette | [`roulette`] | bounce counts, the wrapper X_rr, and what roulette costs and buys |
 //!
 //! Whether an estimator is unbiased, and which classic mistake it looks like if not, is what [`check`] says; `examples/check_mine.rs` is the place to try one's own.

@@ -30,7 +30,7 @@ pub fn two_bounces_converging(room: &BoxRoom, seed: u64) -> Result<Figure> {
     let mut panel = Panel::new(
         "Light after two bounces",
         Axis::log("paths n", 10.0, LAST as f64),
-        Axis::linear("L̂ₒ (W m⁻² sr⁻¹)", 0.0, 2.0 * height),
+        Axis::linear("mean (W m⁻² sr⁻¹)", 0.0, 2.0 * height),
     );
     let spread = reference.variance().unwrap_or(0.0).sqrt();
     let band = |n: f64| 1.96 * spread / n.sqrt();
@@ -43,7 +43,7 @@ pub fn two_bounces_converging(room: &BoxRoom, seed: u64) -> Result<Figure> {
     );
     if let Some(truth) = truth {
         panel.level("truth", Ink::Black, truth);
-        panel.text(Ink::Black, [9e4, 0.87 * truth], Side::Left, &format!("truth {truth:.6}"));
+        panel.text(Ink::Black, [9e4, 0.62 * truth], Side::Left, &format!("truth {truth:.6}"));
     }
     for (series, ink, estimator) in [
         ("light by chance", Ink::Green, &chance as &dyn Estimator),
@@ -94,9 +94,9 @@ pub fn occluded_fraction(draws: u64, seed: u64) -> Result<Figure> {
     const ABOVE: f64 = 0.8;
     let truth = 1.0 - ABOVE * ABOVE; // of a white surface under a light of radiance 1
     let mut panel = Panel::new(
-        "A light at cos θ > 0.8, occluders below c",
-        Axis::linear("fraction c of directions that are occluded", 0.0, 0.85),
-        Axis::linear("L̂/ρ (W m⁻² sr⁻¹)", 0.0, 2.0),
+        "What an occluded direction counts",
+        Axis::linear("occluded fraction c of directions", 0.0, 0.85),
+        Axis::linear("estimate/ρ (W m⁻² sr⁻¹)", 0.0, 2.0),
     );
     panel.level("divided by n", Ink::Blue, truth);
     panel.curve_between("divided by the visible", Ink::Vermilion, 0.0, ABOVE, |c| truth / (1.0 - c));
@@ -153,22 +153,22 @@ pub fn radiance_by_bounces(room: &BoxRoom, seed: u64) -> Result<Figure> {
         };
         let at = f64::from(k);
         if let Some(known) = known {
-            exact.push([at, known]);
+            exact.push([at, 1e3 * known]);
         } else {
             let paths = Paths::new(*room, Bounces::Exactly(k), Cosine, FindLight::BySampling)?;
             let light = estimate(&paths, Budget::Draws(PATHS), seed)?;
-            let error = 1.96 * light.std_error().unwrap_or(0.0);
-            found.push([at, light.mean(), light.mean() - error, light.mean() + error]);
+            let (mean, error) = (1e3 * light.mean(), 1.96e3 * light.std_error().unwrap_or(0.0));
+            found.push([at, mean, mean - error, mean + error]);
         }
     }
     let values =
         || exact.iter().map(|[_, y]| *y).chain(found.iter().map(|[_, y, ..]| *y)).filter(|y| *y > 0.0);
     let (most, least) = (values().fold(1e-9, f64::max), values().fold(f64::INFINITY, f64::min).min(1.0));
-    let (low, high) = (10f64.powf(least.log10().floor()), 10f64.powf((3.0 * most).log10().ceil()));
+    let (low, high) = (10f64.powf(least.log10().floor()), 10f64.powf((2.0 * most).log10().ceil()));
     let mut panel = Panel::new(
         "Light by the number of bounces",
         Axis::linear("bounces k", 0.4, 8.6).with_ticks((1..=8).map(|k| (f64::from(k), k.to_string()))),
-        Axis::log("Lₖ (W m⁻² sr⁻¹)", low, high),
+        Axis::log("Lₖ (mW m⁻² sr⁻¹)", low, high),
     );
     panel.bars("exact", Ink::Blue, 0.7, exact.iter().copied());
     panel.bars("estimated", Ink::Vermilion, 0.7, found.iter().map(|[k, y, ..]| [*k, *y]));
@@ -302,7 +302,7 @@ pub fn path_errors(room: &BoxRoom, seed: u64) -> Result<Vec<Figure>> {
     let by_seconds = error_figure(
         "4_3_error_seconds",
         "seconds on one core",
-        [1e-6, 0.1],
+        [1e-6, 0.06],
         |series| series.seconds,
         &ways,
         &endings,
@@ -321,35 +321,28 @@ fn error_figure(
     seed: u64,
 ) -> Result<Figure> {
     let mut panels = Vec::new();
-    for (heading, all, places) in [
-        ("Four ways of sampling, k ≤ 2", ways, [0.93, 0.62, 0.5, 0.06]),
-        ("Roulette and truncation, all bounces", endings, [0.93, 0.84, 0.75, 0.66]),
-    ] {
+    // of two lines close to each other the upper one has its label on the right, where the lines fall away from it
+    const SIDES: [Side; 4] = [Side::Right, Side::Left, Side::Right, Side::Left];
+    for (heading, all, bottom, top) in
+        [("Four ways of sampling, k ≤ 2", ways, 2e-4, 20.0), ("Roulette and truncation", endings, 5e-4, 1.0)]
+    {
         let ticks = [(1e-3, "0.1 %"), (1e-2, "1 %"), (0.1, "10 %"), (1.0, "100 %"), (10.0, "1000 %")];
-        let (bottom, top): (f64, f64) =
-            if all.len() == ways.len() && heading.starts_with("Four") { (2e-4, 20.0) } else { (5e-4, 1.0) };
         let mut panel = Panel::new(
             heading,
             Axis::log(unit, low, high),
             Axis::log("RMSE/truth", bottom, top).with_ticks(ticks),
         );
-        for (series, place) in all.iter().zip(places) {
+        for (series, side) in all.iter().zip(SIDES) {
+            let Series { label, ink, marker, .. } = *series;
             let work = cost(series);
-            panel.curve(
-                series.label,
-                series.ink,
-                |c| if c >= work { series.rmse(c / work) } else { f64::NAN },
-            );
-            panel.marks(
-                series.label,
-                series.ink,
-                series.marker,
-                series.measured.iter().map(|[n, rmse]| [n * work, *rmse]),
-            );
-            let height = bottom * (top / bottom).powf(place);
-            let left = place < 0.1;
-            let x = if left { low * (high / low).powf(0.02) } else { high };
-            panel.text(series.ink, [x, height], if left { Side::Right } else { Side::Left }, series.label);
+            panel.curve(label, ink, |c| if c >= work { series.rmse(c / work) } else { f64::NAN });
+            panel.marks(label, ink, marker, series.measured.iter().map(|[n, rmse]| [n * work, *rmse]));
+            if series.bias == 0.0 {
+                let between_points = 362.0;
+                panel.text(ink, [between_points * work, series.rmse(between_points)], side, label);
+            } else {
+                panel.text(ink, [high, 1.3 * series.bias.abs()], Side::Left, label);
+            }
         }
         panels.push(panel);
     }

@@ -24,7 +24,8 @@ const PRIMES: [&str; 4] = ["", "′", "″", "‴"];
 
 /// 4.1 and 4.2: up to three paths, as they were sampled, from the side: the student's edition, which has room, cube, light, eye and p only, and the solution.
 ///
-/// Of the paths that reach the light the first ones are taken that can be told apart in a drawing: their vertices are apart, and they pass neither before nor behind the cube.
+/// Of the paths that reach the light the first ones are taken that can be told apart in a drawing: their vertices are apart and lie on faces that are seen edge on, and they pass
+/// neither before nor behind the cube.
 /// `paths` samples the light.
 ///
 /// # Errors
@@ -51,7 +52,7 @@ fn polyline(path: &Path) -> Vec<[f64; 2]> {
 
 fn chosen(paths: &Paths, count: usize, seed: u64) -> Vec<Path> {
     let mut chosen: Vec<Path> = Vec::new();
-    let mut taken: Vec<[f64; 2]> = vec![seen(paths.room().point().position()), eye(paths)];
+    let mut taken: Vec<[f64; 2]> = vec![seen(paths.room().point().position())];
     for block in 0..4096 {
         if chosen.len() == count {
             break;
@@ -60,14 +61,16 @@ fn chosen(paths: &Paths, count: usize, seed: u64) -> Vec<Path> {
         let points = polyline(&path);
         let later = points.get(1..).unwrap_or_default();
         let reaches = path.light > 0.0 && path.samples.last().is_some_and(|sample| sample.visible);
+        let on_edge = path.vertices.iter().skip(1).all(|vertex| vertex.normal().y == 0.0);
         let apart =
             |needed: f64, a: [f64; 2], others: &[[f64; 2]]| others.iter().all(|b| distance(a, *b) > needed);
         let told_apart = later.iter().enumerate().all(|(i, point)| {
             // the light is small: the last points may be closer
-            let needed = if i + 1 == later.len() { 0.2 } else { 0.55 };
+            let needed = if i + 1 == later.len() { 0.2 } else { 0.8 };
             apart(needed, *point, &taken) && apart(needed, *point, later.get(..i).unwrap_or_default())
         });
-        if reaches && told_apart && points.windows(2).all(|pair| passes_the_cube(pair)) {
+        let free = points.windows(2).all(|pair| passes_the_cube(pair) && passes(pair, eye(paths)));
+        if reaches && on_edge && told_apart && free {
             taken.extend_from_slice(later);
             chosen.push(path);
         }
@@ -75,14 +78,24 @@ fn chosen(paths: &Paths, count: usize, seed: u64) -> Vec<Path> {
     chosen
 }
 
+/// Points along a segment.
+fn along(segment: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> {
+    let ends = <[[f64; 2]; 2]>::try_from(segment).ok();
+    ends.into_iter().flat_map(|[a, b]| {
+        (0..=200)
+            .map(move |i| f64::from(i) / 200.0)
+            .map(move |t| [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])])
+    })
+}
+
+/// Whether a segment leaves room around a point.
+fn passes(segment: &[[f64; 2]], point: [f64; 2]) -> bool {
+    along(segment).all(|at| distance(at, point) > 0.3)
+}
+
 /// Whether a segment stays off the cube in the drawing.
 fn passes_the_cube(segment: &[[f64; 2]]) -> bool {
-    let &[a, b] = segment else { return true };
-    (0..=200).all(|i| {
-        let t = f64::from(i) / 200.0;
-        let at = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
-        at[0].abs() >= Face::CUBE_HALF_WIDTH || at[1] >= Face::CUBE_HEIGHT
-    })
+    along(segment).all(|at| at[0].abs() >= Face::CUBE_HALF_WIDTH || at[1] >= Face::CUBE_HEIGHT)
 }
 
 /// Where the eye is drawn: before p's face, a little aside.
@@ -119,6 +132,9 @@ fn drawing(paths: &Paths, chosen: &[Path], seed: u64, edition: Edition) -> Resul
             draw_path(path, line, ink, number, &mut panel, &mut labels);
         }
         labels.place(&mut panel, Ink::Black, to_eye, "ωₒ");
+    }
+    if paths.room().scene().light_half_width > 0.0 {
+        labels.place(&mut panel, Ink::Black, [0.0, Face::ROOM_HEIGHT + 0.06], "light");
     }
     panel.marks("eye", Ink::Black, Marker::Ring, [eye(paths)]).marks(
         "eye",
@@ -169,12 +185,9 @@ fn draw_room(paths: &Paths, panel: &mut Panel, labels: &mut Labels) {
     if light > 0.0 {
         let (low, high) = (h - 0.03, h + 0.06);
         panel.band("light", Ink::Black, [[-light, low, high], [light, low, high]]);
-        panel.line(
-            "light",
-            Ink::Black,
-            [[-light, low], [light, low], [light, high], [-light, high], [-light, low]],
-        );
-        labels.place(panel, Ink::Black, [0.0, h + 0.06], "light");
+        let outline = [[-light, low], [light, low], [light, high], [-light, high], [-light, low]];
+        panel.line("light", Ink::Black, outline);
+        labels.avoid(&outline);
     }
 }
 
