@@ -56,6 +56,7 @@ pub mod check;
 pub mod density;
 pub mod error;
 pub mod estimate;
+pub mod fast;
 #[cfg(feature = "workbook")]
 pub mod figure;
 pub mod hemisphere;

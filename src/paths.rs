@@ -35,6 +35,8 @@ use crate::roulette::{Roulette, coin, draws_for};
 use crate::run::{Estimator, from_fn};
 use crate::stream::Stream;
 
+mod wide;
+
 /// How a path finds the light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum FindLight {
@@ -144,6 +146,11 @@ impl Paths {
             }
         };
         Ok(Self { room, counted, ending, directions, light })
+    }
+
+    /// The same paths computed in `f32`, in half the time: speed against accuracy. Its draws are summed in `f64` all the same.
+    pub fn in_f32(self) -> PathsF32 {
+        PathsF32(self)
     }
 
     /// The scene.
@@ -283,8 +290,32 @@ impl Estimator for Paths {
         self.light_from(&self.room.point(), rng)
     }
 
+    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
+        wide::fill::<f64>(self, rng, draws);
+    }
+
     fn draws_per_block(&self) -> u64 {
         draws_for(self.work())
+    }
+}
+
+/// [`Paths`] in single precision; see [`Paths::in_f32`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathsF32(Paths);
+
+impl Estimator for PathsF32 {
+    fn draw(&self, rng: &mut Stream) -> f64 {
+        let mut draw = [0.0];
+        self.fill(rng, &mut draw);
+        draw[0]
+    }
+
+    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
+        wide::fill::<f32>(&self.0, rng, draws);
+    }
+
+    fn draws_per_block(&self) -> u64 {
+        self.0.draws_per_block()
     }
 }
 
