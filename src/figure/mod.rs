@@ -5,6 +5,7 @@
 //! editions: [`Edition::Student`] has the same canvas and axes with nothing of the answer on it.
 
 mod check;
+mod extremes;
 mod inversion;
 mod labels;
 mod lambertian;
@@ -16,6 +17,7 @@ mod room;
 mod roulette;
 
 pub use check::{mistakes, wealth};
+pub use extremes::{errors_in_ulps, running_mean_errors};
 pub use inversion::{empirical_cdf, exponential, tails};
 pub use lambertian::{directions, integrand, variance_against_exponent, variance_against_ring};
 pub use paths::{occluded_fraction, path_errors, radiance_by_bounces, two_bounces_converging};
