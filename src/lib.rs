@@ -66,6 +66,7 @@ pub mod rectangle;
 pub mod roulette;
 pub mod run;
 pub mod stream;
+pub mod trade;
 #[cfg(feature = "workbook")]
 pub mod workbook;
 

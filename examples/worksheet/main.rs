@@ -39,6 +39,9 @@ mod q5_2;
 #[path = "../q5_3_more_bounces.rs"]
 mod q5_3;
 
+#[path = "../trade.rs"]
+mod trade;
+
 fn main() -> ExitCode {
     workbook::worksheet(
         &[
@@ -59,6 +62,6 @@ fn main() -> ExitCode {
             ("5.2", q5_2::answer),
             ("5.3", q5_3::answer),
         ],
-        &[extremes::answer],
+        &[extremes::answer, trade::answer],
     )
 }

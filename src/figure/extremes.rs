@@ -10,6 +10,9 @@ use crate::stream::Stream;
 /// u, and −ln(1 − u) and 1 − e^(−u) to 32 digits, by another program; see `extremes.py`.
 const TRUTHS: &str = include_str!("extremes.csv");
 
+/// A way to write a function, and how it is drawn.
+type Form<'a> = (&'a str, Ink, Marker, &'a dyn Fn(f64) -> f64);
+
 /// The errors of three ways to write each of −ln(1 − u) and 1 − e^(−x), in units of the last place, against the argument.
 ///
 /// # Errors
@@ -18,14 +21,14 @@ pub fn errors_in_ulps() -> Result<Figure> {
     let exponential = Exponential::new(1.0)?;
     let mut quantile = ulp_panel("−ln(1 − u)", "u");
     let mut cdf = ulp_panel("1 − exp(−x)", "x");
-    let forms: [(&str, Ink, Marker, fn(f64) -> f64); 2] = [
-        ("−ln(1 − u)", Ink::Vermilion, Marker::Cross, |u| -(1.0 - u).ln()),
-        ("inverse_cdf, by ln_1p", Ink::Blue, Marker::Dot, |u| -(-u).ln_1p()),
+    let forms: [Form<'_>; 2] = [
+        ("−ln(1 − u)", Ink::Vermilion, Marker::Cross, &|u| -(1.0 - u).ln()),
+        ("inverse_cdf, by ln_1p", Ink::Blue, Marker::Dot, &|u| -(-u).ln_1p()),
     ];
     for (label, ink, marker, form) in forms {
         quantile.marks(label, ink, marker, errors(form, |[_, high, low, _, _]| [high, low]));
     }
-    let forms: [(&str, Ink, Marker, &dyn Fn(f64) -> f64); 3] = [
+    let forms: [Form<'_>; 3] = [
         ("1 − exp(−x)", Ink::Vermilion, Marker::Cross, &|x| 1.0 - (-x).exp()),
         ("2 exp(−x/2) sinh(x/2)", Ink::Green, Marker::Triangle, &|x| {
             2.0 * (-0.5 * x).exp() * (0.5 * x).sinh()

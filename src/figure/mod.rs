@@ -15,6 +15,7 @@ mod rectangle;
 mod render;
 mod room;
 mod roulette;
+mod trade;
 
 pub use check::{mistakes, wealth};
 pub use extremes::{errors_in_ulps, running_mean_errors};
@@ -24,6 +25,7 @@ pub use paths::{occluded_fraction, path_errors, radiance_by_bounces, two_bounces
 pub use rectangle::{running_means, sampling_errors};
 pub use room::paths_drawn;
 pub use roulette::{bounces, mean_bounces, roulette_trade, truncation};
+pub use trade::trade;
 
 use std::fmt::Write as _;
 use std::fs;

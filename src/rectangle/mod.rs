@@ -16,9 +16,11 @@
 //!
 //! One's own estimator for question 2.1 is checked by `examples/check_mine.rs`.
 
+mod genz;
 mod integrand;
 mod replicate;
 
+pub use genz::{Family, Genz};
 pub use integrand::Integrand;
 pub use replicate::{AllPairs, Jittered, Sobol};
 

@@ -31,6 +31,7 @@ pub struct Answer {
     cost: Cost,
     seed: Option<u64>,
     seconds: Option<f64>,
+    pilot_never_varied: bool,
     note: Option<String>,
     figures: Vec<Figure>,
 }
@@ -49,6 +50,7 @@ impl Answer {
             cost: Cost::default(),
             seed: None,
             seconds: None,
+            pilot_never_varied: false,
             note: None,
             figures: Vec::new(),
         }
@@ -93,6 +95,7 @@ impl Answer {
         self.cost = outcome.cost;
         self.seed = Some(outcome.seed);
         self.seconds = Some(outcome.elapsed.as_secs_f64());
+        self.pilot_never_varied = outcome.pilot_never_varied();
         self
     }
 
@@ -165,6 +168,10 @@ impl Answer {
 
     pub(super) fn seconds(&self) -> Option<f64> {
         self.seconds
+    }
+
+    pub(super) fn pilot_never_varied(&self) -> bool {
+        self.pilot_never_varied
     }
 
     pub(super) fn sentence(&self) -> Option<&str> {

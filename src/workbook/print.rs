@@ -192,6 +192,9 @@ fn solution(out: &mut impl Write, answer: &Answer, varied: &[&str]) -> io::Resul
         if cost.evaluations > 0 {
             write!(out, ", {} evaluations", cost.evaluations)?;
         }
+        if answer.pilot_never_varied() {
+            write!(out, ", the pilot run never varied")?;
+        }
         let seed = answer.seed().unwrap_or_default();
         writeln!(out, ", {:.3} s, seed {seed}", answer.seconds().unwrap_or_default())?;
     } else if let Some(value) = answer.found() {
@@ -261,6 +264,8 @@ pub(super) fn help(questions: &[&Question]) -> Result<()> {
     }
     text += "Options
     --draws N            draws of every estimator (default: each question's own number)
+    --error E            draws until the std error is E, by a pilot run (in the units of the answer)
+    --seconds S          draws for S seconds an estimator
     --seed S             seed of all random numbers (1)
     --threads T          threads (one a core; the results are the same for any number)
     --out DIR            folder for figures and pages (worksheet)
