@@ -62,25 +62,27 @@ fn panel(
 ) -> Panel {
     let least = rivals.iter().map(|rival| cost(rival)).fold(f64::INFINITY, f64::min);
     let low = 10f64.powf(least.log10().floor() + 1.0);
-    let high = low * 1e5;
+    let high = low * 9e4;
     let error = |rival: &Measured, c: f64| rival.rmse(rival.seconds * c / cost(rival)) / scale;
     let visible = |error: f64| error.is_finite() && error > 0.0;
     let ends =
         rivals.iter().flat_map(|rival| [error(rival, low), error(rival, high)]).filter(|e| visible(*e));
     let (bottom, top) =
         ends.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), e| (low.min(e), high.max(e)));
+    // two powers of ten above the curves leave room for their names
+    let room = if heading == "Against draws" { 100.0 } else { 1.0 };
     let (bottom, top) = if bottom < top {
-        (10f64.powf(bottom.log10().floor()), 10f64.powf(top.log10().ceil()))
+        (10f64.powf(bottom.log10().floor()), room * 10f64.powf(top.log10().ceil()))
     } else {
         (1e-3, 1.0)
     };
     let mut panel = Panel::new(heading, Axis::log(axis, low, high), Axis::log("RMSE/truth", bottom, top));
     for (index, (rival, (ink, _))) in rivals.iter().zip(STYLES).enumerate() {
         panel.curve(&rival.name, ink, |c| if visible(error(rival, c)) { error(rival, c) } else { f64::NAN });
-        // names in a corner, the first panel's alone
+        // names where the curves have fallen away, in the first panel alone
         if heading == "Against draws" {
-            let row = 0.06 + 0.075 * (rivals.len() - 1 - index) as f64;
-            panel.text(ink, [low, bottom * (top / bottom).powf(row)], Side::Right, &rival.name);
+            let row = 0.97 - 0.075 * index as f64;
+            panel.text(ink, [high, bottom * (top / bottom).powf(row)], Side::Left, &rival.name);
         }
     }
     panel
@@ -96,8 +98,8 @@ fn with_speed_up(mut panel: Panel, rivals: &[&Measured], scale: f64) -> Panel {
     if factor < 1.05 {
         return panel;
     }
-    // at the error that the best reaches a third of the way along
-    let at = panel.x.low * (panel.x.high / panel.x.low).powf(0.25);
+    // at the error that the best reaches near the left end
+    let at = panel.x.low * (panel.x.high / panel.x.low).powf(0.1);
     let error = best.rmse(at) / scale;
     panel.arrow(Ink::Black, [(at * factor).min(panel.x.high), error], [at, error]);
     let middle = at * factor.min(panel.x.high / at).sqrt();

@@ -1,9 +1,8 @@
 //! Genz's six families of integrands, in two dimensions: each is hard in one way, and each has a closed form.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
-use statrs::function::erf::erf;
-
+use super::integrand::bell;
 use crate::error::{Result, require};
 
 /// In which way an integrand of Genz's is hard.
@@ -104,7 +103,7 @@ impl Genz {
             // [1 − 1/(1 + a) − 1/(1 + b) + 1/(1 + a + b)]/(2ab), of which the bracket is ab(2 + a + b)/((1 + a)(1 + b)(1 + a + b))
             Family::CornerPeak => 0.5 * (2.0 + a + b) / ((1.0 + a) * (1.0 + b) * (1.0 + a + b)),
             Family::Gaussian => {
-                let side = |a: f64, w: f64| 0.5 * PI.sqrt() / a * (erf(a * (1.0 - w)) + erf(a * w));
+                let side = |a: f64, w: f64| bell(1.0, [-a * w, a * (1.0 - w)]) / a;
                 side(a, u) * side(b, v)
             }
             Family::Continuous => {
