@@ -100,6 +100,22 @@ impl Exponential {
         Ok((-u).ln_1p().abs() / self.rate)
     }
 
+    /// The x that is exceeded with probability u, −ln(u)/λ for any u in \[0, 1\]: F⁻¹(1 − u), which has no digits left for small u.
+    ///
+    /// # Errors
+    /// If u is not in \[0, 1\].
+    ///
+    /// ```
+    /// let exponential = unbiased::inversion::Exponential::new(1.0)?;
+    /// let x = exponential.inverse_survival(1e-100)?; // 1 − 1e-100 rounds to 1
+    /// assert!((exponential.survival(x) / 1e-100 - 1.0).abs() < 1e-13);
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    pub fn inverse_survival(&self, u: f64) -> Result<f64> {
+        require_probability(u)?;
+        Ok(u.ln().abs() / self.rate)
+    }
+
     /// λx, and what rounding took from it: an exponent near 700 that is off by half an ulp costs 300 ulp of its exponential.
     fn times(&self, x: f64) -> (f64, f64) {
         let product = self.rate * x;
