@@ -63,6 +63,7 @@ pub mod rectangle;
 pub mod roulette;
 pub mod run;
 pub mod stream;
+mod wide;
 #[cfg(feature = "workbook")]
 pub mod workbook;
 
