@@ -19,7 +19,8 @@ const fn power_of_two(n: i64) -> f64 {
 }
 
 /// a + b and what rounding took from it (Knuth).
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
+#[inline(always)]
+pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let added = sum - a;
     (sum, (a - (sum - added)) + (b - added))

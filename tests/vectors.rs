@@ -145,7 +145,9 @@ fn evaluate(row: &Row) -> Result<Found, Error> {
     let model = || LightModel::new(x("rho"), if row.bits.contains_key("v") { x("v") } else { 1.0 });
     let paths = || -> Result<RoulettePaths, Error> { model()?.roulette(x("q")) };
     let truncated = || -> Result<TruncatedPaths, Error> { model()?.truncated(row.count("k")) };
-    let direction = |hemisphere: Hemisphere| hemisphere.direction_of(x("u"), if row.bits.contains_key("v") { x("v") } else { 0.0 });
+    let direction = |hemisphere: Hemisphere| {
+        hemisphere.direction_of(x("u"), if row.bits.contains_key("v") { x("v") } else { 0.0 })
+    };
     let vector = || Direction::new(x("x"), x("y"), x("z"));
     let surface = || Lambertian::new(x("albedo"));
     let box_of = || Rectangle::new([0.0, x("w")], [0.0, x("h")]);
@@ -322,7 +324,9 @@ fn is_refused_by_design(row: &Row) -> bool {
             row.number("p") == 0.0 || name == "geom_inv" && row.number("p") == 1.0
         }
         "furnace_S_k" => row.number("rho") == 1.0 || row.count("k") > 1_000_000_000,
-        name if name.starts_with("box_") && row.bits.contains_key("w") => sides(row.number("w"), row.number("h")),
+        name if name.starts_with("box_") && row.bits.contains_key("w") => {
+            sides(row.number("w"), row.number("h"))
+        }
         "box_lerp" => {
             let width = row.number("hi") - row.number("lo");
             sides(width, 1.0 / width)
@@ -343,10 +347,8 @@ struct Tally {
     worst: u64,
 }
 
-/// Most ulp that a function may be off.
-fn bound(_row: &Row) -> u64 {
-    2
-}
+/// Most ulp that a value may be off.
+const BOUND: u64 = 2;
 
 fn check(name: &str, table: &str) -> Tally {
     let mut functions: BTreeMap<String, Tally> = BTreeMap::new();
@@ -383,7 +385,7 @@ fn check(name: &str, table: &str) -> Tally {
             }
         };
         tally.worst = tally.worst.max(worst);
-        if worst <= bound(&row) {
+        if worst <= BOUND {
             tally.passed += 1;
         } else {
             let given = match found {
@@ -396,7 +398,9 @@ fn check(name: &str, table: &str) -> Tally {
             failures.push(format!("{worst} ulp: {line}: {given}"));
         }
     }
-    println!("{name}: function, rows, within bound, refused, exact accumulators only, no function, worst ulp");
+    println!(
+        "{name}: function, rows, within bound, refused, exact accumulators only, no function, worst ulp"
+    );
     let mut sum = Tally::default();
     for (function, tally) in &functions {
         let Tally { rows, passed, refused, exact_only, no_function, worst } = tally;
@@ -418,7 +422,10 @@ fn check(name: &str, table: &str) -> Tally {
 #[test]
 fn the_worksheets_extremes_come_out() {
     let all = check("extremes.csv", include_str!("data/extremes.csv"));
-    assert_eq!(all.rows, 683);
+    // refused: p_rr = 0 (18 rows), rectangles outside f64 (91), sums of a furnace without an end or of more than 10⁹ terms (13);
+    // without a function: the number of bounces at a U that no generator gives
+    let Tally { rows, passed, refused, exact_only, no_function, .. } = all;
+    assert_eq!([rows, passed, refused, exact_only, no_function], [683, 555, 122, 2, 4]);
 }
 
 #[test]
