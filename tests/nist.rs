@@ -179,9 +179,8 @@ fn draws_far_from_0_keep_the_digits_of_their_spread() {
     }
 }
 
-/// About 5 s: `cargo test --release --test nist -- --ignored --nocapture`.
+/// About 4 s.
 #[test]
-#[ignore = "10⁹ draws"]
 fn the_mean_of_1e9_draws_is_that_of_a_compensated_sum() {
     let mut rng = Stream::new(common::seed(4), 0);
     let mut estimate = Estimate::new();

@@ -54,7 +54,8 @@ impl LightModel {
 
     /// The truth v/(1 − ρ).
     pub fn mean(&self) -> f64 {
-        self.visibility / (1.0 - self.albedo)
+        let Terms { one, rho, v } = self.terms();
+        (v / (one - rho)).round()
     }
 
     /// Paths that go on with probability q after every vertex and weigh what vertex k sees with (ρ/q)ᵏ.
