@@ -276,20 +276,16 @@ fn student_t(freedom: f64, tail: f64) -> f64 {
 #[inline(always)]
 fn total(draws: &[f64], f: impl Fn(f64) -> f64, two_sum: impl Fn(f64, f64) -> (f64, f64)) -> Twofold {
     let (mut sums, mut lost) = ([0.0; 8], [0.0; 8]);
-    let mut add = |lane: usize, x: f64| {
-        let (sum, error) = two_sum(sums[lane], x);
-        sums[lane] = sum;
-        lost[lane] += error;
+    let mut add = |draws: &[f64]| {
+        for ((sum, lost), &draw) in sums.iter_mut().zip(&mut lost).zip(draws) {
+            let (next, error) = two_sum(*sum, f(draw));
+            *sum = next;
+            *lost += error;
+        }
     };
     let (eights, rest) = draws.as_chunks::<8>();
-    for eight in eights {
-        for lane in 0..8 {
-            add(lane, f(eight[lane]));
-        }
-    }
-    for (lane, &draw) in rest.iter().enumerate() {
-        add(lane, f(draw));
-    }
+    eights.iter().for_each(|eight| add(eight));
+    add(rest);
     let lanes = sums.into_iter().zip(lost);
     lanes.fold(Twofold::ZERO, |total, (hi, lo)| total.plus(lo).plus(hi))
 }

@@ -81,13 +81,14 @@ impl Exponential {
     /// e^(−512) once or twice times one that is far inside `f64`.
     #[cold]
     fn pdf_far_out(&self, product: f64, lost: f64) -> f64 {
-        let (steps, factor) = (1.0, Wide::from(EXP_FAR[0]) + Wide::from(EXP_FAR[1]));
-        let (steps, factor) = if product > 2.0 * FAR { (2.0, factor.squared()) } else { (steps, factor) };
-        let rest = (steps * FAR - product).exp();
+        let once = Wide::from(EXP_FAR[0]) + Wide::from(EXP_FAR[1]);
+        let (far, factor) = if product > 2.0 * FAR { (2.0 * FAR, once.squared()) } else { (FAR, once) };
+        let rest = (far - product).exp();
         (Wide::from(self.rate) * factor * Wide::from(rest - rest * lost)).round()
     }
 
-    /// F(x) = P(X ≤ x) = 1 − e^(−λx), by `exp_m1`: 1 − e^(−λx) itself is 0 at x = 1e-17. It never falls, not even by rounding.
+    /// F(x) = P(X ≤ x) = 1 − e^(−λx), by `exp_m1`: 1 − e^(−λx) itself is 0 at x = 1e-17. It does
+    /// not fall between neighbours, either.
     pub fn cdf(&self, x: f64) -> f64 {
         if x < 0.0 {
             return 0.0;
@@ -140,6 +141,7 @@ impl Exponential {
     }
 }
 
+/// Where the density is computed with care.
 const FAR: f64 = 512.0;
 
 /// e^(−512) as an unevaluated sum.
@@ -195,7 +197,8 @@ impl Estimator for Exponential {
 /// and no starting guess, and a jump or a flat is nothing special. (Worksheet 1.1, "any other one-dimensional distribution"; Devroye,
 /// *Non-Uniform Random Variate Generation*, section II.2.)
 ///
-/// As a [`Distribution`] it draws F⁻(U). A sample is NaN where F turns out not to be a cdf, which ends a run with an
+/// As a [`Distribution`] it draws F⁻(U), with 2⁻⁵⁴ for U = 0, so that the least and the greatest sample have probability 2⁻⁵³ each
+/// and are finite wherever F⁻ is there. A sample is NaN where F turns out not to be a cdf, which ends a run with an
 /// error; [`inverse_cdf`](Self::inverse_cdf) says what was wrong.
 ///
 /// ```

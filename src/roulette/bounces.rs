@@ -110,6 +110,9 @@ impl Roulette {
 }
 
 /// N by flipping coins; see [`Roulette::bounces_by_simulation`].
+///
+/// # The ends
+/// n bounces or more have probability pⁿ, and take n coins: without end only on a generator that is stuck below p.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BouncesBySimulation {
     roulette: Roulette,
@@ -141,7 +144,8 @@ impl Estimator for BouncesBySimulation {
 /// N = ⌊ln(1 − U)/ln p⌋; see [`Roulette::bounces_by_inversion`].
 ///
 /// # The ends
-/// U = k·2⁻⁵³ is never 1, so the tail of N ends at 53 ln 2/−ln p, beyond which its probability is below 2⁻⁵³: at 164 bounces for p = 4/5.
+/// U = k·2⁻⁵³ is never 1, so the tail of N ends at 53 ln 2/−ln p, beyond which its probability is below 2⁻⁵³: at 164 bounces for p = 4/5, and
+/// at 3.3e17 for p = 1 − 2⁻⁵³, drawn as fast as any.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BouncesByInversion {
     ln_p: f64,
