@@ -100,7 +100,6 @@ impl Estimate {
             step if sum_exponent == 0 => {
                 (step, Twofold { hi: scale(delta.hi, step), lo: scale(delta.lo, step) })
             }
-            _ if delta.hi == 0.0 => (-STEP, delta),
             _ => (STEP, delta),
         };
         let exponent = self.exponent.max(other.exponent).max(step);
