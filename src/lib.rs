@@ -67,6 +67,7 @@ pub mod roulette;
 pub mod run;
 pub mod stream;
 pub mod trade;
+mod wide;
 #[cfg(feature = "workbook")]
 pub mod workbook;
 
