@@ -43,11 +43,8 @@ pub(crate) fn nearest(origin: DVec3, direction: DVec3) -> Vertex {
     let ray = Ray::new(origin, direction);
     let (to_wall, wall) = ray.room();
     let (enters, leaves, side) = ray.cube();
-    let (distance, face) = if blocks(enters, leaves) && enters <= to_wall {
-        (enters.max(0.0), side)
-    } else {
-        (to_wall, wall)
-    };
+    let (distance, face) =
+        if blocks(enters, leaves) && enters <= to_wall { (enters.max(0.0), side) } else { (to_wall, wall) };
     ray.at(distance, face)
 }
 
