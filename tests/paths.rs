@@ -3,8 +3,9 @@
 //! # What a test catches
 //! Where a draw is a function of a few numbers, these are put in: Gauss's nodes where it is smooth, which leaves rounding, and two random points in each
 //! of very many cells where it has jumps, whose differences give the error bar. Such a bar, and that of plain draws, may be missed by 8 std errors (1.2e-15, two-sided); a
-//! bias of 11 is caught in all runs but one in a thousand, and `caught` asserts that it is at most as large as the test says: 1e-3 of the truth
-//! or less on every rung. About 300 comparisons: 4e-13 a run.
+//! bias of 11 is caught in all runs but one in a thousand. Every comparison prints the bias that it would catch, and fails if that is more than is said here: 1e-3 of
+//! the truth for direct light, shadows, two bounces with the light sampled, the furnace without a limit and the balance of energy; 3e-3 for the cumulative values; 1e-2 for
+//! two bounces with the light found by chance (1e-3 in the ignored test); 3e-2 for every way against every other. About 300 comparisons: 4e-13 a run.
 
 mod common;
 
@@ -414,7 +415,7 @@ fn the_furnace_without_a_limit() {
     .enumerate()
     {
         let found =
-            plain(&paths(furnace(albedo), bounces, (directions, ByChance)), 12_000_000, 430 + i as u64);
+            plain(&paths(furnace(albedo), bounces, (directions, ByChance)), 11_000_000, 430 + i as u64);
         found.assert(1.0 / (1.0 - albedo), 0.0, 1e-3, &format!("{bounces:?}, {directions:?}, ρ = {albedo}"));
     }
 }
@@ -455,7 +456,7 @@ fn lit_scene(rng: &mut Stream) -> (Scene, f64) {
 #[test]
 fn direct_light_is_howells() {
     let mut rng = Stream::new(common::seed(440), 0);
-    for i in 0..10 {
+    for i in 0..6 {
         let (scene, p) = lit_scene(&mut rng);
         let at = room(scene).point();
         let truth = room(scene).albedo(&at) * scene.radiance * p;
@@ -516,8 +517,7 @@ fn polygonal_lights_fill_their_part_of_the_sky() {
 
 #[test]
 fn shadows_of_the_cube_are_where_they_belong() {
-    let points =
-        [([0.7, 0.1], 1.3), ([0.55, -0.3], 1.6), ([-0.45, 0.62], 1.7), ([0.7, 0.7], 1.9), ([-0.9, 0.0], 1.9)];
+    let points = [([0.7, 0.1], 1.3), ([-0.45, 0.62], 1.7), ([-0.9, 0.0], 1.9)];
     for (i, ([x, y], h)) in points.into_iter().enumerate() {
         let scene = Scene { light_half_width: h, point: [x, y, 0.0], ..Scene::default() };
         let free = seen(&room(scene).point(), h);
@@ -533,17 +533,17 @@ fn shadows_of_the_cube_are_where_they_belong() {
 
 // ---- two bounces ---------------------------------------------------------------------------------------------------
 
-/// By chance a bias of 5e-3 is caught here; certificates of 1e-3 are in the next test.
+/// By chance a bias of 1e-2 is caught here, in the next test one of 1e-3.
 #[test]
 fn two_bounces_are_the_quadratures() {
-    two_bounces_hold(0..2, 5e-3);
+    two_bounces_hold(1..2, 1e-2);
 }
 
 /// `cargo test --release --test paths -- --ignored`
 #[test]
 #[ignore = "takes minutes"]
 fn two_bounces_are_the_quadratures_by_chance_too() {
-    two_bounces_hold(1..4, 1e-3);
+    two_bounces_hold(0..4, 1e-3);
 }
 
 fn two_bounces_hold(scenes: std::ops::Range<u64>, caught_by_chance: f64) {
@@ -600,7 +600,7 @@ fn two_bounces_hold(scenes: std::ops::Range<u64>, caught_by_chance: f64) {
 #[test]
 fn what_is_emitted_is_absorbed() {
     energy_is_balanced(1.0, 2.0, 1e-3);
-    energy_is_balanced(0.0, 10.0, 1e-2);
+    energy_is_balanced(0.0, 10.0, 2e-2);
 }
 
 fn energy_is_balanced(emission: f64, radiance: f64, caught: f64) {
@@ -616,9 +616,7 @@ fn energy_is_balanced(emission: f64, radiance: f64, caught: f64) {
     let surface: f64 = Face::ALL.iter().map(|face| face.area()).sum();
     let light = 3.8 * 3.8;
     let truth = PI * (radiance * light + emission * (surface - light));
-    for (i, (bounces, way)) in
-        [(All(0.4), WAYS[0]), (AllByWeight, WAYS[2]), (UpTo(20), WAYS[1])].into_iter().enumerate()
-    {
+    for (i, (bounces, way)) in [(All(0.4), WAYS[0]), (UpTo(20), WAYS[1])].into_iter().enumerate() {
         let all = paths(scene, bounces, way);
         let absorbed = from_fn(|rng| {
             // a point in proportion to area, the floor's by rejection
@@ -642,8 +640,8 @@ fn energy_is_balanced(emission: f64, radiance: f64, caught: f64) {
             (1.0 - room.albedo(&x)) * PI * all.light_from(&from, rng) * surface
         });
         let what = format!("{bounces:?} {way:?}");
-        let pilot = plain(&absorbed, 200_000, 520 + i as u64).std_error;
-        let draws = 2e5 * (11.3 * pilot / (caught * truth)).powi(2);
+        let pilot = plain(&absorbed, 100_000, 520 + i as u64).std_error;
+        let draws = 1e5 * (11.6 * pilot / (caught * truth)).powi(2);
         plain(&absorbed, draws as u64, 524 + i as u64).assert(
             truth,
             0.0,
@@ -673,7 +671,7 @@ fn all_ways_agree() {
         radiance: 2.0,
         point: [0.5, 0.1, 0.4],
     };
-    let draws = 1_500_000;
+    let draws = 600_000;
     for (j, group) in [
         vec![Exactly(1)],
         vec![Exactly(2)],
@@ -695,7 +693,7 @@ fn all_ways_agree() {
         }
         for (i, (a, one)) in found.iter().enumerate() {
             for (b, other) in &found[..i] {
-                one.agrees(*other, 4e-2, &format!("{a} and {b}"));
+                one.agrees(*other, 3e-2, &format!("{a} and {b}"));
             }
         }
     }
