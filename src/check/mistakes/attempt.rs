@@ -1,9 +1,11 @@
 //! Estimators to be tried.
 
 use std::fmt;
+use std::ops::RangeInclusive;
 
 use super::probe::Setup;
 use super::{Probe, Topic, roulette};
+use crate::box_room::BoxRoom;
 use crate::error::{Error, Result};
 use crate::hemisphere::Direction;
 use crate::rectangle::Rectangle;
@@ -29,6 +31,7 @@ type Integrator<'a> = dyn Fn(&dyn Fn(f64, f64) -> f64, &Rectangle, &mut Stream) 
 type Reflector<'a> = dyn Fn(&dyn Fn(&Direction) -> f64, f64, &mut Stream) -> f64 + Send + Sync + 'a;
 type Wrapper<'a> = dyn Fn(&mut dyn FnMut(&mut Stream) -> f64, f64, &mut Stream) -> f64 + Send + Sync + 'a;
 type Walker<'a> = dyn Fn(f64, f64, Option<u32>, &mut Stream) -> f64 + Send + Sync + 'a;
+type Tracer<'a> = dyn Fn(&BoxRoom, RangeInclusive<u32>, &mut Stream) -> f64 + Send + Sync + 'a;
 
 enum Kind<'a> {
     Exponential(Box<Sampler<'a>>),
@@ -37,6 +40,7 @@ enum Kind<'a> {
     Roulette(Box<Wrapper<'a>>),
     Bounces(Box<Sampler<'a>>),
     Furnace(Box<Walker<'a>>),
+    Paths(Box<Tracer<'a>>),
 }
 
 impl<'a> Attempt<'a> {
@@ -76,6 +80,28 @@ impl<'a> Attempt<'a> {
         Self(Kind::Furnace(Box::new(draw)))
     }
 
+    /// (room, bounces, random numbers) → one draw of an estimate of the light that leaves the room's point p after so many bounces, the first and the last
+    /// counted in: `2..=2` is the light of exactly two, `0..=3` that of up to three. The room says where p is, what emits and what the albedos are.
+    ///
+    /// ```
+    /// use unbiased::check::Attempt;
+    /// use unbiased::hemisphere::Hemisphere;
+    /// use unbiased::paths::{Bounces, FindLight, Paths};
+    ///
+    /// let attempt = Attempt::paths(|room, bounces, rng| {
+    ///     let (first, last) = bounces.into_inner();
+    ///     let bounces = if first == last { Bounces::Exactly(last) } else { Bounces::UpTo(last) };
+    ///     Paths::new(*room, bounces, Hemisphere::Cosine, FindLight::BySampling)
+    ///         .map_or(f64::NAN, |paths| paths.light_from(&room.point(), rng))
+    /// });
+    /// # let _ = attempt;
+    /// ```
+    pub fn paths(
+        draw: impl Fn(&BoxRoom, RangeInclusive<u32>, &mut Stream) -> f64 + Send + Sync + 'a,
+    ) -> Self {
+        Self(Kind::Paths(Box::new(draw)))
+    }
+
     /// The topic it belongs to.
     pub fn topic(&self) -> Topic {
         match self.0 {
@@ -85,6 +111,7 @@ impl<'a> Attempt<'a> {
             Kind::Roulette(_) => Topic::Roulette,
             Kind::Bounces(_) => Topic::Bounces,
             Kind::Furnace(_) => Topic::Furnace,
+            Kind::Paths(_) => Topic::Paths,
         }
     }
 
@@ -116,6 +143,9 @@ impl<'a> Attempt<'a> {
             (Kind::Bounces(draw), Setup::Bounces { p_rr }) => draw(p_rr, rng),
             (Kind::Furnace(draw), Setup::Furnace { albedo, emission, bounces }) => {
                 draw(albedo, emission, bounces, rng)
+            }
+            (Kind::Paths(draw), Setup::Paths { room, bounces: [first, last] }) => {
+                draw(&room, first..=last, rng)
             }
             _ => f64::NAN,
         }

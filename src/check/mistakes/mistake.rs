@@ -14,6 +14,7 @@ pub struct Mistake {
     wrong: Attempt<'static>,
     expected: Expected,
     random_numbers: usize,
+    means: OnceLock<Vec<f64>>,
     spreads: OnceLock<Vec<Option<f64>>>,
 }
 
@@ -59,11 +60,16 @@ impl Mistake {
         expected: impl Fn(&Setup) -> f64 + Send + Sync + 'static,
     ) -> Self {
         let expected = Expected::Closed(Box::new(expected));
-        Self { words, wrong, expected, random_numbers, spreads: OnceLock::new() }
+        Self::of(words, random_numbers, wrong, expected)
     }
 
     pub(super) fn by_quadrature(words: Words, random_numbers: usize, wrong: Attempt<'static>) -> Self {
-        Self { words, wrong, expected: Expected::Quadrature, random_numbers, spreads: OnceLock::new() }
+        Self::of(words, random_numbers, wrong, Expected::Quadrature)
+    }
+
+    fn of(words: Words, random_numbers: usize, wrong: Attempt<'static>, expected: Expected) -> Self {
+        let (means, spreads) = (OnceLock::new(), OnceLock::new());
+        Self { words, wrong, expected, random_numbers, means, spreads }
     }
 
     /// What it is called.
@@ -103,11 +109,20 @@ impl Mistake {
 
     /// What its draws average to on a probe; infinite where they have no mean, NaN on a probe of another topic.
     pub fn expected(&self, probe: &Probe) -> f64 {
-        match &self.expected {
-            _ if probe.topic() != self.topic() => f64::NAN,
+        if probe.topic() != self.topic() {
+            return f64::NAN;
+        }
+        let mean = |probe: &Probe| match &self.expected {
             Expected::Closed(expected) => expected(&probe.setup),
             Expected::Quadrature => self.exactly(probe).map_or(f64::NAN, |exact| exact.mean),
-        }
+        };
+        let probes = self.topic().probes();
+        let known = probes.iter().position(|other| other == probe);
+        known
+            .and_then(|index| {
+                self.means.get_or_init(|| probes.iter().map(mean).collect()).get(index).copied()
+            })
+            .unwrap_or_else(|| mean(probe))
     }
 
     /// The same divided by [`Probe::unit`]: the truth, where that is not 0.

@@ -9,6 +9,7 @@ mod exponential;
 mod furnace;
 mod hemisphere;
 mod mistake;
+mod paths;
 mod probe;
 mod rectangle;
 mod roulette;

@@ -1,11 +1,14 @@
 //! Problems of known truth.
 
 use std::fmt;
+use std::ops::RangeInclusive;
 
-use super::{Sky, Statistic, Surface, Topic, furnace};
-use crate::error::{Result, require, require_count};
+use super::{Sky, Statistic, Surface, Topic, furnace, paths};
+use crate::box_room::BoxRoom;
+use crate::error::{Error, Result, require, require_count};
 use crate::inversion::Exponential;
 use crate::lambertian::Lambertian;
+use crate::paths::MOST_BOUNCES;
 use crate::rectangle::Rectangle;
 use crate::roulette::Roulette;
 
@@ -26,6 +29,7 @@ pub(super) enum Setup {
     Roulette { p_rr: f64 },
     Bounces { p_rr: f64 },
     Furnace { albedo: f64, emission: f64, bounces: Option<u32> },
+    Paths { room: BoxRoom, bounces: [u32; 2] },
 }
 
 impl Probe {
@@ -94,6 +98,36 @@ impl Probe {
         Ok(Self { setup: Setup::Furnace { albedo, emission, bounces }, truth, unit: truth })
     }
 
+    /// The light that leaves a room's point p after so many bounces, the first and the last counted in, where it is known without following paths:
+    /// - in a furnace (faces that emit, no light): any bounces if all albedos are the same, up to 2 from the cube's top, up to 1 from elsewhere
+    /// - from the light alone: up to 1, or 2 from the cube's top if the light's half-width is at most 1. One bounce is a closed form, the cube's shadow taken off; two are
+    ///   its integral over the walls, to 1e-10.
+    ///
+    /// # Errors
+    /// Elsewhere, where there is no light at all, and for more than [`MOST_BOUNCES`].
+    ///
+    /// ```
+    /// use unbiased::box_room::{BoxRoom, Scene};
+    /// use unbiased::check::Probe;
+    ///
+    /// let room = BoxRoom::new(Scene::default())?;
+    /// assert!((Probe::paths(room, 1..=1)?.truth() - 0.2728543591976926).abs() < 1e-15);
+    /// assert!((Probe::paths(room, 2..=2)?.truth() - 0.039903921548169116).abs() < 1e-11);
+    /// assert!(Probe::paths(room, 1..=3).is_err());
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    pub fn paths(room: BoxRoom, bounces: RangeInclusive<u32>) -> Result<Self> {
+        let (first, last) = (*bounces.start(), *bounces.end());
+        require_count("the last bounce", last.into(), last <= MOST_BOUNCES, "at most 64")?;
+        require_count("the first bounce", first.into(), first <= last, "at most the last one")?;
+        let bounces = [first, last];
+        let unknown =
+            || Error::Usage("what this room's p gets after these bounces has no exact value".into());
+        let truth = paths::truth(&room, bounces).ok_or_else(unknown)?;
+        require("the light at p", truth, truth > 0.0 && truth.is_finite(), "positive and finite")?;
+        Ok(Self { setup: Setup::Paths { room, bounces }, truth, unit: truth })
+    }
+
     /// What a right estimator's draws average to.
     pub fn truth(&self) -> f64 {
         self.truth
@@ -118,6 +152,7 @@ impl Probe {
             Setup::Roulette { .. } => Topic::Roulette,
             Setup::Bounces { .. } => Topic::Bounces,
             Setup::Furnace { .. } => Topic::Furnace,
+            Setup::Paths { .. } => Topic::Paths,
         }
     }
 }
@@ -140,6 +175,7 @@ impl fmt::Display for Probe {
             Setup::Furnace { albedo, emission, bounces: None } => {
                 write!(f, "ρ = {albedo}, L = {emission}, all bounces")
             }
+            Setup::Paths { room, bounces } => paths::describe(f, room.scene(), bounces),
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::LazyLock;
 
-use super::{Mistake, Probe, exponential, furnace, hemisphere, rectangle, roulette};
+use super::{Mistake, Probe, exponential, furnace, hemisphere, paths, rectangle, roulette};
 
 /// A kind of estimator, with its probes and its classic mistakes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -20,12 +20,21 @@ pub enum Topic {
     Bounces,
     /// Light after several bounces where every face emits and reflects alike.
     Furnace,
+    /// Light along paths in the box room (4.3).
+    Paths,
 }
 
 impl Topic {
     /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::Exponential, Self::Rectangle, Self::Hemisphere, Self::Roulette, Self::Bounces, Self::Furnace];
+    pub const ALL: [Self; 7] = [
+        Self::Exponential,
+        Self::Rectangle,
+        Self::Hemisphere,
+        Self::Roulette,
+        Self::Bounces,
+        Self::Furnace,
+        Self::Paths,
+    ];
 
     /// What it is called.
     pub const fn name(self) -> &'static str {
@@ -36,6 +45,7 @@ impl Topic {
             Self::Roulette => "Russian roulette",
             Self::Bounces => "number of bounces",
             Self::Furnace => "light in a furnace",
+            Self::Paths => "paths in the box room",
         }
     }
 
@@ -52,6 +62,7 @@ impl Topic {
             "1.1" | "1.2" => Some(Self::Exponential),
             "2.1" => Some(Self::Rectangle),
             "3.2" | "3.4" | "3.5" => Some(Self::Hemisphere),
+            "4.3" => Some(Self::Paths),
             "5" => Some(Self::Roulette),
             "5.1" | "5.1(iii)" | "5.2" => Some(Self::Bounces),
             _ => None,
@@ -60,7 +71,7 @@ impl Topic {
 
     /// Its probes. No parameter that hides a mistake (λ = 1, p = ½, a square, L = 1) stands alone.
     pub fn probes(self) -> &'static [Probe] {
-        static PROBES: LazyLock<[Vec<Probe>; 6]> = LazyLock::new(|| {
+        static PROBES: LazyLock<[Vec<Probe>; 7]> = LazyLock::new(|| {
             [
                 exponential::probes(),
                 rectangle::probes(),
@@ -68,6 +79,7 @@ impl Topic {
                 roulette::wrapper_probes(),
                 roulette::bounce_probes(),
                 furnace::probes(),
+                paths::probes(),
             ]
         });
         PROBES.get(self as usize).map_or(&[], Vec::as_slice)
@@ -75,7 +87,7 @@ impl Topic {
 
     /// Its classic mistakes.
     pub fn mistakes(self) -> &'static [Mistake] {
-        static MISTAKES: LazyLock<[Vec<Mistake>; 6]> = LazyLock::new(|| {
+        static MISTAKES: LazyLock<[Vec<Mistake>; 7]> = LazyLock::new(|| {
             [
                 exponential::mistakes(),
                 rectangle::mistakes(),
@@ -83,6 +95,7 @@ impl Topic {
                 roulette::wrapper_mistakes(),
                 roulette::bounce_mistakes(),
                 furnace::mistakes(),
+                paths::mistakes(),
             ]
         });
         MISTAKES.get(self as usize).map_or(&[], Vec::as_slice)
