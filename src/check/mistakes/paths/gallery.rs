@@ -3,12 +3,12 @@
 use std::f64::consts::PI;
 
 use super::super::{Mistake, words};
-use super::{GOES_ON, Hidden, RIGHT, Seen, Spot, Way, counted, followed, found_only};
+use super::{GOES_ON, Hidden, RIGHT, Sampled, Seen, Spot, Way, counted, followed, found_only};
 use crate::hemisphere::Hemisphere;
 
 /// Everything about a light sample.
 fn sampled(name: &'static str, formula: &'static str, fix: &'static str, sample: fn(Seen) -> f64) -> Mistake {
-    followed(words("4.3", name, formula, fix), Way { sample: Some(sample), ..RIGHT })
+    followed(words("4.3", name, formula, fix), Way { sample: Sampled::As(sample), ..RIGHT })
 }
 
 pub(in super::super) fn mistakes() -> Vec<Mistake> {
@@ -134,7 +134,7 @@ pub(in super::super) fn mistakes() -> Vec<Mistake> {
                 "ω = reflected ray at p_j",
                 "a diffuse surface sends light everywhere: draw ω anew at every vertex",
             ),
-            Way { sample: None, chance: true, mirror: true, ..RIGHT },
+            Way { sample: Sampled::Never, chance: true, mirror: true, ..RIGHT },
         ),
         followed(
             words("4.3", "cos θ forgotten, uniform directions", "f_r 2π a bounce", direction),

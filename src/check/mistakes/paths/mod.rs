@@ -4,7 +4,7 @@
 //! comes to is worked out from the same way without random paths. One light sample shared by all vertices of a path is no mistake: it is independent
 //! of every direction, so the mean stays; one that shares the *directions'* random numbers is.
 
-use std::f64::consts::FRAC_1_PI;
+use std::f64::consts::{FRAC_1_PI, PI};
 use std::fmt;
 
 use glam::DVec3;
@@ -52,7 +52,7 @@ pub(super) fn probes() -> Vec<Probe> {
     .collect()
 }
 
-/// The scene and the bounces in a few words.
+/// The bounces and the scene in a few words: p, the albedos and what emits.
 pub(super) fn describe(f: &mut fmt::Formatter<'_>, scene: &Scene, [first, last]: [u32; 2]) -> fmt::Result {
     let [x, y, z] = scene.point;
     if first == last {
@@ -60,12 +60,12 @@ pub(super) fn describe(f: &mut fmt::Formatter<'_>, scene: &Scene, [first, last]:
     } else {
         write!(f, "k = {first} to {last}")?;
     }
-    write!(f, ", p = ({x}, {y}, {z}), ρ = {} (cube {})", scene.wall_albedo, scene.cube_albedo)?;
+    write!(f, ", p = ({x}, {y}, {z}), walls {}, cube {}", scene.wall_albedo, scene.cube_albedo)?;
     if scene.light_half_width > 0.0 {
         write!(f, ", light {} of half-width {}", scene.radiance, scene.light_half_width)?;
     }
     if scene.emission > 0.0 {
-        write!(f, ", every face emits {}", scene.emission)?;
+        write!(f, ", all emit {}", scene.emission)?;
     }
     Ok(())
 }
@@ -80,6 +80,25 @@ struct Seen {
     r: f64,
     /// The light's area.
     area: f64,
+}
+
+/// How the light is sampled.
+#[derive(Debug, Clone, Copy)]
+enum Sampled {
+    Never,
+    Rightly,
+    /// With this for cos θ cos θ′ A/r².
+    As(fn(Seen) -> f64),
+}
+
+impl Sampled {
+    fn value(self, seen: Seen) -> f64 {
+        match self {
+            Self::Never => 0.0,
+            Self::Rightly => seen.here * seen.there * seen.area / (seen.r * seen.r),
+            Self::As(value) => value(seen),
+        }
+    }
 }
 
 /// Which point of the light is taken.
@@ -108,8 +127,8 @@ enum Hidden {
 struct Way {
     /// The first and the last bounce that count, from those asked for.
     counted: fn([u32; 2]) -> [u32; 2],
-    /// f_r L_e apart, what a light sample adds; None where the light is not sampled.
-    sample: Option<fn(Seen) -> f64>,
+    /// What a light sample adds, f_r L_e apart.
+    sample: Sampled,
     spot: Spot,
     hidden: Hidden,
     /// Whether the light is found by chance.
@@ -136,7 +155,7 @@ const TRIES: u32 = 4000;
 
 const RIGHT: Way = Way {
     counted: |asked| asked,
-    sample: Some(|seen| seen.here * seen.there * seen.area / (seen.r * seen.r)),
+    sample: Sampled::Rightly,
     spot: Spot::Random,
     hidden: Hidden::Dark,
     chance: false,
@@ -199,7 +218,9 @@ impl Way {
 
     /// L_e times what a sample of the light is taken for.
     fn sampled(&self, room: &BoxRoom, vertex: &Vertex, [u, v]: [f64; 2], rng: &mut Stream) -> f64 {
-        let Some(value) = self.sample else { return 0.0 };
+        if matches!(self.sample, Sampled::Never) {
+            return 0.0;
+        }
         // a point of the ceiling never sees the light
         let tries = if self.hidden == Hidden::Redrawn && vertex.face() != Face::Ceiling { TRIES } else { 1 };
         for _ in 0..tries {
@@ -211,7 +232,7 @@ impl Way {
             let seen = Seen::of(room, vertex, at);
             let above = seen.here > 0.0 && seen.there > 0.0;
             if above && (self.hidden == Hidden::Lit || visible(vertex, at)) {
-                return room.scene().radiance * value(seen);
+                return room.scene().radiance * self.sample.value(seen);
             }
         }
         0.0
@@ -256,9 +277,14 @@ impl Way {
 
     /// The mean of what the light is taken for at a path's last vertex, directions to get there included: p itself for one bounce, a wall for two.
     fn mean_of_samples(&self, room: &BoxRoom, k: u32) -> f64 {
-        let Some(value) = self.sample else { return 0.0 };
-        let at = |vertex: &Vertex, y: DVec3| value(Seen::of(room, vertex, y));
+        if matches!(self.sample, Sampled::Never) {
+            return 0.0;
+        }
+        let at = |vertex: &Vertex, y: DVec3| self.sample.value(Seen::of(room, vertex, y));
         let random = |vertex: &Vertex| {
+            if matches!(self.sample, Sampled::Rightly) && self.hidden == Hidden::Dark {
+                return PI * exact::seen(room, vertex);
+            }
             let over = |f: &dyn Fn(DVec3) -> f64| {
                 exact::over_the_light(room, vertex, self.hidden != Hidden::Lit, f) / room.light_area()
             };
@@ -328,19 +354,28 @@ fn counted(words: Words, counted: fn([u32; 2]) -> [u32; 2]) -> Mistake {
 
 /// Rays that found no light left out of n.
 fn found_only(words: Words) -> Mistake {
-    let way = Way { sample: None, chance: true, ..RIGHT };
+    /// What a path brings if it finds the light after k bounces.
+    fn brings(room: &BoxRoom, k: u32) -> f64 {
+        (0..k).map(|j| exact::albedo(room, j)).product::<f64>() * room.scene().radiance
+    }
+    let way = Way { sample: Sampled::Never, chance: true, ..RIGHT };
     of_expected(
         words,
-        Attempt::paths(move |room, bounces, rng| way.draw_until_lit(room, bounces.into_inner().into(), rng)),
-        move |room, [first, last]| {
-            let after = |k| exact::after(room, k);
-            if room.scene().light_half_width == 0.0 {
-                return (first..=last).map(after).sum();
+        Attempt::paths(move |room, bounces, rng| match bounces.into_inner() {
+            // each that finds it brings the same, so that there is no need to look
+            (first, last) if first == last && last > 0 && room.scene().light_half_width > 0.0 => {
+                brings(room, last)
             }
-            // a path of k bounces brings the product of its albedos times L_e, or nothing
-            let brings = |k| (0..k).map(|j| exact::albedo(room, j)).product::<f64>() * room.scene().radiance;
-            let (light, chance) = (first.max(1)..=last)
-                .fold((0.0, 0.0), |(light, chance), k| (light + after(k), chance + after(k) / brings(k)));
+            bounces => way.draw_until_lit(room, bounces.into(), rng),
+        }),
+        |room, [first, last]| {
+            if room.scene().light_half_width == 0.0 {
+                return RIGHT.mean(room, [first, last]);
+            }
+            let (light, chance) = (first.max(1)..=last).fold((0.0, 0.0), |(light, chance), k| {
+                let after = exact::after(room, k);
+                (light + after, chance + after / brings(room, k))
+            });
             light / chance
         },
     )
