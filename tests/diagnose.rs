@@ -313,45 +313,39 @@ fn probes_have_the_right_truths() {
     close(paths(even(0.8), 0..=6), 2.5 * (1.0 - 0.2097152) / 0.2);
 }
 
-/// Two bounces by a rule of its own, Simpson's, over the walls' points instead of Gauss and Legendre's.
+/// Two bounces by a rule of its own over the walls' points: Simpson's with n² of them and 4n², extrapolated.
 #[test]
 fn the_two_bounce_part_is_integrated_to_1e_10() {
-    let n = 300;
-    let simpson = |i: i32| {
-        f64::from(if i == 0 || i == n {
-            1
-        } else if i % 2 == 1 {
-            4
-        } else {
-            2
-        }) / 3.0
-    };
-    for scene in [ODD, Scene { light_half_width: 1.0, point: [-0.4, 0.45, 1.0], ..ODD }] {
-        let room = BoxRoom::new(scene).unwrap();
-        let p = room.point();
+    let simpson = |room: &BoxRoom, n: i32| {
+        let weight =
+            |i: i32| f64::from(if i == 0 || i == n { 1 } else { 2 + 2 * (i % 2) }) / 3.0 / f64::from(n);
+        let p = room.point().position();
         let mut sum = 0.0;
         for i in 0..=n {
             for j in 0..=n {
                 let (a, z) =
                     (-2.0 + 4.0 * f64::from(i) / f64::from(n), 1.0 + 3.0 * f64::from(j) / f64::from(n));
-                let weight = simpson(i) * simpson(j) * 12.0 / f64::from(n * n);
                 for (point, normal) in [
                     (DVec3::new(-2.0, a, z), DVec3::X),
                     (DVec3::new(2.0, a, z), DVec3::NEG_X),
                     (DVec3::new(a, -2.0, z), DVec3::Y),
                     (DVec3::new(a, 2.0, z), DVec3::NEG_Y),
                 ] {
-                    let (way, seen) =
-                        (point - p.position(), form_factor(&room.light_corners(), point, normal));
+                    let (way, seen) = (point - p, form_factor(&room.light_corners(), point, normal));
                     let cosines = way.z * normal.dot(-way) / way.length_squared().powi(2);
-                    sum += weight * seen * cosines / PI;
+                    sum += 12.0 * weight(i) * weight(j) * seen * cosines / PI;
                 }
             }
         }
-        let truth = 0.37 * 0.61 * 7.0 * sum;
-        let off = (Probe::paths(room, 2..=2).unwrap().truth() / truth - 1.0).abs();
+        sum
+    };
+    for scene in [ODD, Scene { light_half_width: 1.0, point: [-0.4, 0.45, 1.0], ..ODD }] {
+        let room = BoxRoom::new(scene).unwrap();
+        let extrapolated = (16.0 * simpson(&room, 160) - simpson(&room, 80)) / 15.0;
+        let off =
+            (Probe::paths(room, 2..=2).unwrap().truth() / (0.37 * 0.61 * 7.0 * extrapolated) - 1.0).abs();
         println!("{off:e}");
-        assert!(off <= 1e-9, "{off:e}"); // Simpson's own error; see `two_bounces_by_pencil`
+        assert!(off <= 1e-10, "{off:e}");
     }
 }
 
@@ -395,7 +389,7 @@ fn the_cubes_shadow_is_that_of_its_rays() {
         hidden += i32::from(dark > 0 && dark < n * n);
     }
     println!("{hidden} points see a part of the light");
-    assert!(hidden >= 40);
+    assert!(hidden >= 30);
 }
 
 /// A scene with odd numbers, in which no two mistakes look alike.
