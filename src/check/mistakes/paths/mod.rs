@@ -20,7 +20,7 @@ mod gallery;
 
 pub(super) use gallery::mistakes;
 
-/// The light after the first to the last bounce, if that is known exactly: each k separately, or where the light is alone.
+/// The light after the first to the last bounce, if that is known exactly.
 pub(super) fn truth(room: &BoxRoom, [first, last]: [u32; 2]) -> Option<f64> {
     (first..=last).map(|k| exact::is_known(room, k).then(|| exact::after(room, k))).sum()
 }
@@ -39,7 +39,7 @@ pub(super) fn probes() -> Vec<Probe> {
     let even = |albedo| Scene { wall_albedo: albedo, cube_albedo: albedo, ..furnace };
     [
         (odd, 1..=1),
-        // the cube hides the light from half of what this p would see
+        // the cube hides from this p nearly half of the light
         (Scene { point: [0.7, 0.1, 0.0], ..odd }, 1..=1),
         (Scene::default(), 2..=2),
         (odd, 2..=2),
@@ -52,17 +52,17 @@ pub(super) fn probes() -> Vec<Probe> {
     .collect()
 }
 
-/// The bounces and the scene in a few words: p, the albedos and what emits.
+/// The bounces and the scene in a few words: p, the albedos, what emits, and the light's half-width.
 pub(super) fn describe(f: &mut fmt::Formatter<'_>, scene: &Scene, [first, last]: [u32; 2]) -> fmt::Result {
     let [x, y, z] = scene.point;
-    if first == last {
-        write!(f, "k = {last}")?;
-    } else {
-        write!(f, "k = {first} to {last}")?;
+    match (first, last) {
+        _ if first == last => write!(f, "k = {last}")?,
+        (0, _) => write!(f, "k ≤ {last}")?,
+        _ => write!(f, "k = {first}…{last}")?,
     }
-    write!(f, ", p = ({x}, {y}, {z}), walls {}, cube {}", scene.wall_albedo, scene.cube_albedo)?;
+    write!(f, ", p at {x}, {y}, {z}, walls {}, cube {}", scene.wall_albedo, scene.cube_albedo)?;
     if scene.light_half_width > 0.0 {
-        write!(f, ", light {} of half-width {}", scene.radiance, scene.light_half_width)?;
+        write!(f, ", light {} over ±{}", scene.radiance, scene.light_half_width)?;
     }
     if scene.emission > 0.0 {
         write!(f, ", all emit {}", scene.emission)?;
@@ -244,7 +244,7 @@ impl Way {
         (first..=last).map(|k| self.mean_after(room, k)).sum()
     }
 
-    /// The mean light after k bounces, on probes whose truth is known.
+    /// The mean light after k bounces, in rooms whose truth is known.
     fn mean_after(&self, room: &BoxRoom, k: u32) -> f64 {
         let Some(before) = k.checked_sub(1) else { return room.emitted(&room.point()) };
         let of_p = exact::albedo(room, 0);
