@@ -1038,7 +1038,7 @@ fn bad_input_is_an_error() {
         (ODD, 3..=3, "no exact value"),
         (ODD, 0..=0, "the light at p must be positive"),
         (ODD, 1..=65, "the last bounce must be at most 64, not 65"),
-        (ODD, 3..=2, "the first bounce must be at most the last one, not 3"),
+        (ODD, std::ops::RangeInclusive::new(3, 2), "the first bounce must be at most the last one, not 3"),
         (Scene { point: [1.0, 1.0, 0.0], ..ODD }, 2..=2, "no exact value"),
         (Scene { light_half_width: 1.1, ..ODD }, 2..=2, "no exact value"),
         (Scene { emission: 1.0, ..ODD }, 1..=1, "no exact value"),
