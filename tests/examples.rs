@@ -442,6 +442,9 @@ fn the_readers_estimator_is_judged_and_its_mistake_named() {
     assert_eq!(code, Some(0), "{said}");
     assert!(said.contains("consistent with:\n1. uniform directions, the cosine weight"), "{said}");
     assert!(said.contains("To mend it: "), "{said}");
+    let (code, said) = check_mine(&["--question", "4.3", "--draws", "200000"], "");
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("seed 1.\nNothing wrong seen"), "{said}");
 }
 
 #[test]
