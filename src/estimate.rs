@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use crate::error::{Error, Result, require};
-use crate::wide::two_sum;
+use crate::extended::two_sum;
 
 /// Draws summed in one two-pass sweep: they stay in the first-level cache between the passes.
 pub(crate) const SLICE: usize = 512;

@@ -10,9 +10,9 @@ use rand::distr::{Distribution, StandardUniform};
 
 use crate::density::Density;
 use crate::error::{Error, Result, require};
+use crate::extended::Extended;
 use crate::run::Estimator;
 use crate::stream::Stream;
-use crate::wide::Wide;
 
 /// The exponential distribution with rate λ: p(x) = λ e^(−λx) for x ≥ 0.
 ///
@@ -81,10 +81,10 @@ impl Exponential {
     /// e^(−512) once or twice times one that is far inside `f64`.
     #[cold]
     fn pdf_far_out(&self, product: f64, lost: f64) -> f64 {
-        let once = Wide::from(EXP_FAR[0]) + Wide::from(EXP_FAR[1]);
+        let once = Extended::from(EXP_FAR[0]) + Extended::from(EXP_FAR[1]);
         let (far, factor) = if product > 2.0 * FAR { (2.0 * FAR, once.squared()) } else { (FAR, once) };
         let rest = (far - product).exp();
-        (Wide::from(self.rate) * factor * Wide::from(rest - rest * lost)).round()
+        (Extended::from(self.rate) * factor * Extended::from(rest - rest * lost)).round()
     }
 
     /// F(x) = P(X ≤ x) = 1 − e^(−λx), by `exp_m1`: 1 − e^(−λx) itself is 0 at x = 1e-17. It does

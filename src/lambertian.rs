@@ -12,9 +12,9 @@ use rand::distr::Distribution;
 
 use crate::density::{Density, ratio};
 use crate::error::{Result, require};
+use crate::extended::Extended;
 use crate::hemisphere::{Direction, Hemisphere};
 use crate::run::{Estimator, from_fn};
-use crate::wide::Wide;
 
 /// A diffuse surface: it reflects the part ρ of the light that falls on it, the same radiance in all directions.
 ///
@@ -189,7 +189,7 @@ impl Light for CosinePower {
     }
 
     fn variance(&self, surface: Lambertian, hemisphere: Hemisphere) -> f64 {
-        let [a, one, half] = [self.a, 1.0, 0.5].map(Wide::from);
+        let [a, one, half] = [self.a, 1.0, 0.5].map(Extended::from);
         // the variance is (ρ zero/(a + 2))²/room
         let (zero, room) = match hemisphere {
             Hemisphere::Uniform => (a + one, half * (a + one + half)),
@@ -242,16 +242,16 @@ impl Light for RingLight {
     }
 
     fn reflected(&self, surface: Lambertian) -> f64 {
-        let width = Wide::from(self.width);
+        let width = Extended::from(self.width);
         (width.squared() * surface.albedo.into()).round()
     }
 
     fn variance(&self, surface: Lambertian, hemisphere: Hemisphere) -> f64 {
-        let [albedo, width, three] = [surface.albedo, self.width, 3.0].map(Wide::from);
+        let [albedo, width, three] = [surface.albedo, self.width, 3.0].map(Extended::from);
         let square = (albedo * width).squared();
         let variance = match hemisphere {
-            Hemisphere::Uniform => square * width * (Wide::ONE + three - three * width) / three,
-            Hemisphere::Cosine => square * (Wide::ONE - width.squared()),
+            Hemisphere::Uniform => square * width * (Extended::ONE + three - three * width) / three,
+            Hemisphere::Cosine => square * (Extended::ONE - width.squared()),
         };
         variance.round()
     }

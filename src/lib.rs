@@ -56,6 +56,7 @@ pub mod check;
 pub mod density;
 pub mod error;
 pub mod estimate;
+mod extended;
 #[cfg(feature = "workbook")]
 pub mod figure;
 pub mod hemisphere;
@@ -67,7 +68,6 @@ pub mod roulette;
 pub mod run;
 pub mod stream;
 pub mod trade;
-mod wide;
 #[cfg(feature = "workbook")]
 pub mod workbook;
 

@@ -5,9 +5,9 @@ use rand::distr::{Distribution, StandardUniform};
 
 use super::{P_RR, Roulette, draws_for, one_minus_power, power};
 use crate::error::{Result, require};
+use crate::extended::Extended;
 use crate::run::Estimator;
 use crate::stream::Stream;
-use crate::wide::Wide;
 
 /// The law of N. At p_rr = 1 a path never ends: N is infinite, so that every P(N = k) is 0.
 impl Roulette {
@@ -33,8 +33,8 @@ impl Roulette {
 
     /// Var N = p/(1 − p)², +∞ at p = 1.
     pub fn variance(&self) -> f64 {
-        let p = Wide::from(self.p_rr);
-        (p / (Wide::ONE - p).squared()).round()
+        let p = Extended::from(self.p_rr);
+        (p / (Extended::ONE - p).squared()).round()
     }
 
     /// The smallest k with [`cdf`](Self::cdf)(k) ≥ u, found by bisection: a logarithm's guess can be one off at a step.

@@ -2,9 +2,9 @@
 
 use super::{coin, draws_for};
 use crate::error::{Result, require, require_count};
+use crate::extended::Extended;
 use crate::run::Estimator;
 use crate::stream::Stream;
-use crate::wide::Wide;
 
 /// A model of light paths: vertex k = 0, 1, … sees the light with probability v, independently of the others, and what it sees
 /// has been reflected k times with albedo ρ. The light is Σ ρᵏ v = v/(1 − ρ), dimensionless: in units of the light's radiance.
@@ -114,11 +114,11 @@ impl LightModel {
 
     /// The numbers that all formulas are made of.
     fn terms(&self) -> Terms {
-        Terms { one: Wide::ONE, rho: self.albedo.into(), v: self.visibility.into() }
+        Terms { one: Extended::ONE, rho: self.albedo.into(), v: self.visibility.into() }
     }
 
     /// v(1 − v), the variance of what one vertex sees.
-    fn spread(&self) -> Wide {
+    fn spread(&self) -> Extended {
         let Terms { one, v, .. } = self.terms();
         v * (one - v)
     }
@@ -126,9 +126,9 @@ impl LightModel {
 
 /// Closed forms are computed in more digits than `f64` has and rounded once.
 struct Terms {
-    one: Wide,
-    rho: Wide,
-    v: Wide,
+    one: Extended,
+    rho: Extended,
+    v: Extended,
 }
 
 /// Paths that end by roulette, an unbiased estimator of [`LightModel::mean`]; see [`LightModel::roulette`].
@@ -152,7 +152,7 @@ impl RoulettePaths {
     /// The variance of one path, (A(1 − q) + Bq)/(q − ρ²) with A = v²ρ²/(1 − ρ)² and B = v(1 − v); **+∞ for q ≤ ρ²**,
     /// where the weights grow faster than long paths get rare.
     pub fn variance(&self) -> f64 {
-        self.wide_variance().round()
+        self.extended_variance().round()
     }
 
     /// The expected number of vertices of one path, 1/(1 − q).
@@ -165,11 +165,11 @@ impl RoulettePaths {
     /// # Errors
     /// If C is not positive and finite.
     pub fn mean_square_error(&self, vertices: f64) -> Result<f64> {
-        let paths = Wide::from(require_vertices(vertices)?) * (Wide::ONE - self.q.into());
-        Ok((self.wide_variance() / paths).round())
+        let paths = Extended::from(require_vertices(vertices)?) * (Extended::ONE - self.q.into());
+        Ok((self.extended_variance() / paths).round())
     }
 
-    fn wide_variance(&self) -> Wide {
+    fn extended_variance(&self) -> Extended {
         let Terms { one, rho, v } = self.model.terms();
         let (later, growth) = self.growth();
         let mean = v / (one - rho);
@@ -177,19 +177,19 @@ impl RoulettePaths {
     }
 
     /// Variance × cost / v − (1 − v), written without that difference, which may have no digits.
-    fn excess(&self) -> Wide {
+    fn excess(&self) -> Extended {
         let Terms { one, rho, v } = self.model.terms();
         let (later, growth) = self.growth();
-        let q = Wide::from(self.q);
+        let q = Extended::from(self.q);
         (later * v / (one - rho).squared() + (one - v) * (q / (one - q) + later)) * growth
     }
 
     /// ρ²/q and 1/(1 − ρ²/q), the sum of its powers: +∞ for q ≤ ρ².
-    fn growth(&self) -> (Wide, Wide) {
+    fn growth(&self) -> (Extended, Extended) {
         if self.model.albedo == 0.0 || self.model.visibility == 0.0 {
-            return (Wide::from(0.0), Wide::ONE); // only the first vertex, if any, sees light
+            return (Extended::from(0.0), Extended::ONE); // only the first vertex, if any, sees light
         }
-        let (square, q) = (self.model.terms().rho.squared(), Wide::from(self.q));
+        let (square, q) = (self.model.terms().rho.squared(), Extended::from(self.q));
         let margin = q - square;
         (square / q, if margin.is_positive() { q / margin } else { f64::INFINITY.into() })
     }
@@ -246,7 +246,7 @@ impl TruncatedPaths {
 
     /// The variance of one path, v(1 − v)(1 − ρ²⁽ᴷ⁺¹⁾)/(1 − ρ²).
     pub fn variance(&self) -> f64 {
-        self.wide_variance().round()
+        self.extended_variance().round()
     }
 
     /// The number of vertices of every path, K + 1.
@@ -259,38 +259,38 @@ impl TruncatedPaths {
     /// # Errors
     /// If C is not positive and finite.
     pub fn mean_square_error(&self, vertices: f64) -> Result<f64> {
-        let paths = Wide::from(require_vertices(vertices)?) / self.cost().into();
-        Ok((self.shortfall().squared() + self.wide_variance() / paths).round())
+        let paths = Extended::from(require_vertices(vertices)?) / self.cost().into();
+        Ok((self.shortfall().squared() + self.extended_variance() / paths).round())
     }
 
     fn vertices(&self) -> u64 {
         self.max_k + 1
     }
 
-    fn wide_variance(&self) -> Wide {
+    fn extended_variance(&self) -> Extended {
         self.model.spread() * self.sum_of_squares()
     }
 
     /// Variance × cost / v − (1 − v).
-    fn excess(&self) -> Wide {
+    fn excess(&self) -> Extended {
         let Terms { one, v, .. } = self.model.terms();
         (one - v) * (self.sum_of_squares() * self.cost().into() - one)
     }
 
     /// v ρᴷ⁺¹/(1 − ρ)
-    fn shortfall(&self) -> Wide {
+    fn shortfall(&self) -> Extended {
         let Terms { one, rho, v } = self.model.terms();
         v * self.missing() / (one - rho)
     }
 
     /// ρᴷ⁺¹
-    fn missing(&self) -> Wide {
+    fn missing(&self) -> Extended {
         let (power, _) = self.model.terms().rho.powers(self.vertices());
         power
     }
 
     /// 1 + ρ² + … + ρ²ᴷ
-    fn sum_of_squares(&self) -> Wide {
+    fn sum_of_squares(&self) -> Extended {
         let (_, sum) = self.model.terms().rho.squared().powers(self.vertices());
         sum
     }

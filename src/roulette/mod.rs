@@ -10,9 +10,9 @@ use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
 
 use crate::error::{Result, require};
+use crate::extended::Extended;
 use crate::run::Estimator;
 use crate::stream::Stream;
-use crate::wide::Wide;
 
 mod bounces;
 mod light;
@@ -103,8 +103,8 @@ impl Roulette {
     pub fn wrapped_variance(&self, mean: f64, variance: f64) -> Result<f64> {
         require("the mean of X", mean, mean.is_finite(), "finite")?;
         require("the variance of X", variance, variance >= 0.0, "0 or positive")?;
-        let [mean, variance, p] = [mean, variance, self.p_rr].map(Wide::from);
-        Ok(((variance + mean.squared() * (Wide::ONE - p)) / p).round())
+        let [mean, variance, p] = [mean, variance, self.p_rr].map(Extended::from);
+        Ok(((variance + mean.squared() * (Extended::ONE - p)) / p).round())
     }
 }
 

@@ -7,7 +7,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// (hi + lo)·2^exponent, where 1 ≤ |hi| < 2 and |lo| ≤ ½ ulp(hi); or hi alone where it is 0, infinite or NaN.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Wide {
+pub(crate) struct Extended {
     hi: f64,
     lo: f64,
     exponent: i64,
@@ -26,7 +26,7 @@ pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - (sum - added)) + (b - added))
 }
 
-impl From<f64> for Wide {
+impl From<f64> for Extended {
     fn from(x: f64) -> Self {
         const FAR: i64 = 200;
         match x.abs() {
@@ -37,7 +37,7 @@ impl From<f64> for Wide {
     }
 }
 
-impl Wide {
+impl Extended {
     pub(crate) const ONE: Self = Self { hi: 1.0, lo: 0.0, exponent: 0 };
 
     /// (hi + lo)·2^exponent, for a hi that is far inside `f64`'s range.
@@ -98,7 +98,7 @@ impl Wide {
     }
 }
 
-impl Neg for Wide {
+impl Neg for Extended {
     type Output = Self;
 
     fn neg(self) -> Self {
@@ -106,7 +106,7 @@ impl Neg for Wide {
     }
 }
 
-impl Add for Wide {
+impl Add for Extended {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -129,7 +129,7 @@ impl Add for Wide {
     }
 }
 
-impl Sub for Wide {
+impl Sub for Extended {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -137,7 +137,7 @@ impl Sub for Wide {
     }
 }
 
-impl Mul for Wide {
+impl Mul for Extended {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
@@ -147,7 +147,7 @@ impl Mul for Wide {
     }
 }
 
-impl Div for Wide {
+impl Div for Extended {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
@@ -164,12 +164,12 @@ impl Div for Wide {
 
 #[cfg(test)]
 mod tests {
-    use super::Wide;
+    use super::Extended;
 
     /// Exact in f64, so every digit is checked; the last places of the sums of 106 bits are those of the tests of the closed forms.
     #[test]
     fn operations_keep_what_f64_loses() {
-        let w = Wide::from;
+        let w = Extended::from;
         let tiny = f64::from_bits(1);
         // 1 + 2⁻¹⁰⁰ − 1, (1 + ε)² − 1 − 2ε, 1/3·3, √2²
         assert_eq!((w(1.0) + w(2f64.powi(-100)) - w(1.0)).round(), 2f64.powi(-100));
@@ -205,7 +205,7 @@ mod tests {
             (1.0, 1_000_000_007, 1.0, 1_000_000_007.0),
             (0.0, 3, 0.0, 1.0),
         ] {
-            let (a, b) = Wide::from(x).powers(n);
+            let (a, b) = Extended::from(x).powers(n);
             assert_eq!((a.round(), b.round()), (power, sum), "{x}^{n}");
         }
     }
