@@ -213,6 +213,10 @@ def rows():
         yield "rectangle_area", at, area
         yield "rectangle_density", at, 1 / area
         u = grid()
+        # a large rate brings e^(−λx) back from below f64
+        rate = size(280, 308)
+        x = between(500, 1440) / rate
+        yield "exp_pdf", dict(x=x, lam=rate), mpf(rate) * exp(-mpf(rate) * mpf(x))
         yield "box_lerp", dict(u=u, lo=xa, hi=xb), mpf(xa) + mpf(u) * (mpf(xb) - mpf(xa))
 
 
