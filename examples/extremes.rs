@@ -152,7 +152,7 @@ fn extremes() -> Result<Vec<Extreme>> {
             LightModel::new(nearly_one, 1.0)?.truncated(10)?.mean(),
         ),
         extreme(
-            "all",
+            "2.1",
             "E[X²] − E[X]²",
             "X = 10⁹, 10⁹ + ¼, …",
             (squares - mean * mean) * count / (count - 1.0),
@@ -160,7 +160,7 @@ fn extremes() -> Result<Vec<Extreme>> {
             Estimate::from_draws(&draws).variance().unwrap_or(f64::NAN),
         ),
         extreme(
-            "all",
+            "2.1",
             "√(variance/n)",
             "X = 3·10²⁰⁰, 10²⁰⁰",
             (far_squares - 4e200 * 1e200).sqrt(),

@@ -43,7 +43,7 @@ pub fn answer(options: &Options) -> Result<Appendix> {
     let compared = compared.chain(points.iter().map(|(_, comparison)| ("2.1", comparison)));
     let compared = compared.chain([("5.3", &endings), ("4.3", &ways), ("4.3", &all)]);
     let records = compared.flat_map(|(question, comparison)| {
-        comparison.rivals.iter().map(move |rival| record(question, rival))
+        comparison.rivals.iter().map(move |rival| record(question, rival, options.seed))
     });
     Ok(Appendix {
         example: "trade",
@@ -210,7 +210,7 @@ fn row(rival: &Measured, efficiency: String, remark: String) -> Vec<String> {
     let [low, high] = rival.seconds_range;
     let to = |error| rival.seconds_to(error).map_or("never".to_owned(), |seconds| format!("{seconds:.1e} s"));
     let time = format!("{:.1} ± {:.1}", 1e9 * rival.seconds, 0.5e9 * (high - low));
-    let spread = format!("{:.3}", rival.variance.sqrt() / rival.truth.abs());
+    let spread = format!("{:.3}", rival.variance().sqrt() / rival.truth.abs());
     let mut cells = vec![rival.name.clone(), spread, format!("{:.2}", rival.evaluations), time, efficiency];
     cells.extend([1e-2, 1e-3, 1e-4, 1e-5].map(to));
     cells.push(remark);
@@ -220,7 +220,7 @@ fn row(rival: &Measured, efficiency: String, remark: String) -> Vec<String> {
 /// One line an integrand: how fast the error of each way falls with n, and which one reaches 0.1 % first.
 fn points_table(points: &[(String, Comparison)]) -> Table {
     let slope = |from: &Measured, to: &Measured| {
-        let slope = 0.5 * (to.variance / from.variance).ln() / (to.evaluations / from.evaluations).ln();
+        let slope = 0.5 * (to.variance() / from.variance()).ln() / (to.evaluations / from.evaluations).ln();
         format!("{slope:.2}")
     };
     let rows = points.iter().map(|(name, comparison)| {
@@ -255,16 +255,8 @@ fn points_table(points: &[(String, Comparison)]) -> Table {
     }
 }
 
-fn record(question: &str, rival: &Measured) -> Answer {
-    let record = Answer::new(question, &rival.name)
-        .parameter("variance", rival.variance)
-        .parameter("variance_error", rival.variance_error)
-        .parameter("evaluations_per_draw", rival.evaluations)
-        .parameter("random_numbers_per_draw", rival.random_numbers)
-        .parameter("seconds_per_draw", rival.seconds)
-        .parameter("efficiency", rival.efficiency())
-        .truth(rival.truth)
-        .value(rival.mean);
+fn record(question: &str, rival: &Measured, seed: u64) -> Answer {
+    let record = Answer::new(question, &rival.name).measured(rival, seed);
     if rival.nature == Nature::Unbiased { record } else { record.demonstration() }
 }
 

@@ -10,8 +10,6 @@
 
 use std::time::{Duration, Instant};
 
-use serde::Serialize;
-
 use crate::error::{Result, require};
 use crate::estimate::Estimate;
 use crate::run::{Cost, Estimator, walk_block};
@@ -24,8 +22,7 @@ pub struct Rival<'a> {
 }
 
 /// What is known of an estimator beforehand.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Nature {
     /// Its mean is the quantity.
     Unbiased,
@@ -59,7 +56,7 @@ impl<'a> Rival<'a> {
 /// let rivals = [Uniform, Cosine].map(|p| Rival::new(format!("{p:?}"), surface.estimator(light, p)));
 /// let trade = Trade::new(1, 1.6 / 3.0)?.seconds_each(0.02)?.compare(&rivals)?;
 /// let [uniform, cosine] = &trade.rivals[..] else { panic!() };
-/// assert!(cosine.variance < uniform.variance);
+/// assert!(cosine.variance() < uniform.variance());
 /// println!("{}", trade.csv());
 /// # Ok::<(), unbiased::Error>(())
 /// ```
@@ -183,11 +180,8 @@ impl Batches {
         Measured {
             name: rival.name.clone(),
             nature: rival.nature,
-            draws: all.draws(),
-            mean: all.mean(),
-            std_error: all.std_error().unwrap_or(f64::NAN),
+            estimate: all,
             truth,
-            variance,
             variance_error: variances.std_error().unwrap_or(f64::NAN),
             heavy_tail: share > HEAVY,
             evaluations: cost.evaluations as f64 / draws,
@@ -199,22 +193,16 @@ impl Batches {
 }
 
 /// What was measured of one rival; variance, work and time are those of one draw.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     /// Its name.
     pub name: String,
     /// What it was declared to be.
     pub nature: Nature,
-    /// How many draws were taken.
-    pub draws: u64,
-    /// Their mean.
-    pub mean: f64,
-    /// The standard error of the mean.
-    pub std_error: f64,
+    /// What its draws gave.
+    pub estimate: Estimate,
     /// What is estimated.
     pub truth: f64,
-    /// The variance of a draw.
-    pub variance: f64,
     /// The standard error of the variance, from batches.
     pub variance_error: f64,
     /// Whether a single draw holds 2 % of the sum of squares or more: the variance is not to be trusted, and may be infinite.
@@ -230,9 +218,14 @@ pub struct Measured {
 }
 
 impl Measured {
+    /// The variance of a draw.
+    pub fn variance(&self) -> f64 {
+        self.estimate.variance().unwrap_or(f64::NAN)
+    }
+
     /// The bias: mean − truth of a biased rival, 0 of an unbiased one.
     pub fn bias(&self) -> f64 {
-        if self.nature == Nature::Biased { self.mean - self.truth } else { 0.0 }
+        if self.nature == Nature::Biased { self.estimate.mean() - self.truth } else { 0.0 }
     }
 
     /// 1/(variance × seconds); infinite where nothing varies, 0 where the variance is infinite.
@@ -240,13 +233,13 @@ impl Measured {
         match self.nature {
             Nature::InfiniteVariance => 0.0,
             _ if !self.varies() => f64::INFINITY,
-            _ => (self.variance * self.seconds).recip(),
+            _ => (self.variance() * self.seconds).recip(),
         }
     }
 
     /// Whether the draws differ by more than rounding.
     pub fn varies(&self) -> bool {
-        self.variance.sqrt() > 8.0 * f64::EPSILON * self.mean.abs()
+        self.variance().sqrt() > 8.0 * f64::EPSILON * self.estimate.mean().abs()
     }
 
     /// The standard error of ln efficiency, by those of variance and time.
@@ -254,7 +247,7 @@ impl Measured {
         let [low, high] = self.seconds_range;
         // of a median of normal values, by their quartiles
         let of_time = 1.253 * (high - low) / 1.349 / (BATCHES as f64).sqrt() / self.seconds;
-        let of_variance = if self.variance > 0.0 { self.variance_error / self.variance } else { 0.0 };
+        let of_variance = if self.variance() > 0.0 { self.variance_error / self.variance() } else { 0.0 };
         of_time.hypot(of_variance)
     }
 
@@ -263,19 +256,19 @@ impl Measured {
         if self.nature == Nature::InfiniteVariance {
             return f64::INFINITY;
         }
-        (self.variance * self.seconds / seconds).sqrt().hypot(self.bias())
+        (self.variance() * self.seconds / seconds).sqrt().hypot(self.bias())
     }
 
     /// The seconds to this root mean square error relative to the truth; None if it is out of reach, because of the bias, an infinite variance, or a truth of 0.
     pub fn seconds_to(&self, relative: f64) -> Option<f64> {
         let (aim, bias) = ((relative * self.truth).abs(), self.bias().abs());
         let reachable = aim > bias && self.nature != Nature::InfiniteVariance;
-        reachable.then(|| (self.variance * self.seconds / ((aim - bias) * (aim + bias))).max(self.seconds))
+        reachable.then(|| (self.variance() * self.seconds / ((aim - bias) * (aim + bias))).max(self.seconds))
     }
 
     /// After how many seconds, and at which root mean square error, an unbiased `rival` overtakes this biased one. None if it never does, or is ahead from the start.
     pub fn overtaken_at(&self, rival: &Self) -> Option<[f64; 2]> {
-        let lead = rival.variance * rival.seconds - self.variance * self.seconds;
+        let lead = rival.variance() * rival.seconds - self.variance() * self.seconds;
         let both = self.nature == Nature::Biased && rival.nature == Nature::Unbiased;
         if !both || lead <= 0.0 || self.bias() == 0.0 {
             return None;
@@ -286,7 +279,7 @@ impl Measured {
 }
 
 /// What a comparison found.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     /// The seed of all draws.
     pub seed: u64,
@@ -339,8 +332,10 @@ impl Comparison {
                 Nature::InfiniteVariance => "infinite_variance",
             };
             let [low, high] = rival.seconds_range;
-            let Measured { draws, mean, std_error, truth, variance, variance_error, heavy_tail, .. } = rival;
-            let Measured { evaluations, random_numbers, seconds, .. } = rival;
+            let Measured { truth, variance_error, heavy_tail, evaluations, random_numbers, seconds, .. } =
+                rival;
+            let (draws, mean, variance) = (rival.estimate.draws(), rival.estimate.mean(), rival.variance());
+            let std_error = rival.estimate.std_error().unwrap_or(f64::NAN);
             let to = [1e-2, 1e-3, 1e-4, 1e-5]
                 .map(|error| rival.seconds_to(error).map_or(String::new(), |seconds| seconds.to_string()));
             csv += &format!(

@@ -89,8 +89,8 @@ fn panel(
 }
 
 fn with_speed_up(mut panel: Panel, rivals: &[&Measured], scale: f64) -> Panel {
-    let unbiased = || rivals.iter().filter(|rival| rival.nature == Nature::Unbiased && rival.variance > 0.0);
-    let cost = |rival: &Measured| rival.variance * rival.seconds;
+    let unbiased = || rivals.iter().filter(|rival| rival.nature == Nature::Unbiased && rival.varies());
+    let cost = |rival: &Measured| rival.variance() * rival.seconds;
     let best = unbiased().min_by(|a, b| cost(a).total_cmp(&cost(b)));
     let worst = unbiased().max_by(|a, b| cost(a).total_cmp(&cost(b)));
     let (Some(best), Some(worst)) = (best, worst) else { return panel };

@@ -7,6 +7,7 @@ use crate::box_room::Scene;
 use crate::estimate::Estimate;
 use crate::figure::{Edition, Figure};
 use crate::run::{Cost, Outcome};
+use crate::trade::Measured;
 
 /// What a row of an answer is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -97,6 +98,22 @@ impl Answer {
         self.seconds = Some(outcome.elapsed.as_secs_f64());
         self.pilot_never_varied = outcome.pilot_never_varied();
         self
+    }
+
+    /// What a comparison found of one estimator, with what decides its rank as parameters.
+    pub fn measured(mut self, rival: &Measured, seed: u64) -> Self {
+        let draws = rival.estimate.draws() as f64;
+        let count = |each: f64| (each * draws).round() as u64;
+        self.estimate = Some(rival.estimate);
+        self.cost =
+            Cost { random_numbers: count(rival.random_numbers), evaluations: count(rival.evaluations) };
+        self.seed = Some(seed);
+        self.seconds = Some(rival.seconds * draws);
+        self.truth(rival.truth)
+            .parameter("variance", rival.variance())
+            .parameter("variance_error", rival.variance_error)
+            .parameter("seconds_per_draw", rival.seconds)
+            .parameter("efficiency", rival.efficiency())
     }
 
     /// A sentence: the answer itself where the question has no number, or a word on this one.

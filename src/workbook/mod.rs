@@ -134,7 +134,7 @@ pub type AppendixFn = fn(&Options) -> Result<Appendix>;
 pub fn appendix(appendix: AppendixFn) -> ExitCode {
     ended(Request::read(&[]).and_then(|request| {
         let Some(options) = request.options(&[])? else { return Ok(()) };
-        options.with_out(|| print::appendix(&appendix(&options)?, &options))
+        options.with_out(|| print::appendix(&appendix(&options)?, true, &options))
     }))
 }
 
@@ -156,7 +156,8 @@ pub fn worksheet(answers: &[(&str, AnswerFn)], appendices: &[AppendixFn]) -> Exi
             if options.edition == Edition::Solution {
                 for appendix in appendices {
                     let appendix = appendix(&options)?;
-                    print::appendix(&appendix, &options)?;
+                    // their numbers for programs are what their own examples give
+                    print::appendix(&appendix, !options.json, &options)?;
                     beside.push(appendix);
                 }
             }

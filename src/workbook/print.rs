@@ -30,11 +30,14 @@ pub(super) fn answers(question: &Question, answers: &[Answer], options: &Options
     printed.or_else(until_the_pipe_closes)
 }
 
-/// Prints an appendix and saves its figures.
-pub(super) fn appendix(appendix: &Appendix, options: &Options) -> Result<()> {
+/// Saves an appendix's figures, and prints it unless it is not `wanted`.
+pub(super) fn appendix(appendix: &Appendix, wanted: bool, options: &Options) -> Result<()> {
     let mut paths = Vec::new();
     for figure in &appendix.figures {
         paths.extend(figure.save(&options.out)?);
+    }
+    if !wanted {
+        return Ok(());
     }
     let print = || -> io::Result<()> {
         let out = &mut io::stdout().lock();
