@@ -1,11 +1,10 @@
 //! What a run of draws says: mean, variance, standard error and confidence interval.
 //!
-//! Moments are kept so that no digit is lost that `f64` draws allow: each slice of draws is summed
-//! about its own mean in two passes, slices are merged pairwise (Chan, Golub & LeVeque 1983), and the
-//! running mean and sum of squares are each held as an unevaluated sum of two `f64`. Merging adds
-//! positive terms only, so nothing cancels, however large the mean is beside the spread. The squares
-//! carry an exponent of their own: the std error is right whenever *it* is representable, even where
-//! the variance is not.
+//! Moments are kept so that no digit is lost that `f64` draws allow: Σ Xᵢ and Σ (Xᵢ − X̄)² are each held as an
+//! unevaluated sum of two `f64`. Each slice of draws is summed in two passes, the squares about the slice's own mean,
+//! and slices are merged (Chan, Golub & LeVeque 1983): that adds positive terms only, so nothing cancels, however
+//! large the mean is beside the spread. Sums and squares carry exponents of their own: the mean and the std error are
+//! right whenever *they* are representable, even where the sum or the variance is not.
 
 use std::fmt;
 
@@ -13,14 +12,19 @@ use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use crate::error::{Error, Result, require};
+use crate::extended::two_sum;
 
 /// Draws summed in one two-pass sweep: they stay in the first-level cache between the passes.
 pub(crate) const SLICE: usize = 512;
 
-/// Squares are kept about one of three exponents, −600, 0 and 600, so that none over- or underflows.
+/// Sums are kept about one of two exponents, 0 and 600, and squares about one of three, −600, 0 and 600, so that
+/// none over- or underflows.
 const STEP: i32 = 600;
 const UP: f64 = f64::from_bits((1023 + STEP as u64) << 52);
 const DOWN: f64 = f64::from_bits((1023 - STEP as u64) << 52);
+
+/// 2⁹⁰⁰: up to 2⁶⁴ draws below it have a sum inside `f64`.
+const HUGE: f64 = f64::from_bits((1023 + 900) << 52);
 
 /// The mean of some draws, with its standard error.
 ///
@@ -40,7 +44,9 @@ const DOWN: f64 = f64::from_bits((1023 - STEP as u64) << 52);
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     draws: u64,
-    mean: Twofold,
+    /// Σ Xᵢ / 2^sum_exponent
+    sum: Twofold,
+    sum_exponent: i32,
     /// Σ (Xᵢ − X̄)² / 4^exponent
     squares: Twofold,
     exponent: i32,
@@ -55,7 +61,7 @@ impl Default for Estimate {
 impl Estimate {
     /// No draws yet; the mean of none is NaN.
     pub const fn new() -> Self {
-        Self { draws: 0, mean: Twofold::ZERO, squares: Twofold::ZERO, exponent: -STEP }
+        Self { draws: 0, sum: Twofold::ZERO, sum_exponent: 0, squares: Twofold::ZERO, exponent: -STEP }
     }
 
     /// The estimate that these draws give.
@@ -67,7 +73,7 @@ impl Estimate {
 
     /// Takes in one draw.
     pub fn push(&mut self, draw: f64) {
-        self.merge(&Self { draws: 1, mean: Twofold { hi: draw, lo: 0.0 }, ..Self::new() });
+        self.merge(&Self::of_equal(draw, 1));
     }
 
     /// Takes in many draws, faster than one at a time and equally exact.
@@ -79,30 +85,31 @@ impl Estimate {
 
     /// Takes in all that another estimate of the same quantity has seen.
     ///
-    /// With δ = mean_b − mean_a: Σ² = Σ²_a + Σ²_b + δ² n_a n_b / n and mean = mean_a + δ n_b / n.
+    /// With δ = mean_b − mean_a: Σ² = Σ²_a + Σ²_b + δ² n_a n_b / n.
     pub fn merge(&mut self, other: &Self) {
-        // the larger side is the base: the mean then moves by at most half of δ and cannot overflow
-        let (a, b) = if self.draws >= other.draws { (*self, other) } else { (*other, &*self) };
-        if b.draws == 0 {
-            *self = a;
+        if self.draws == 0 || other.draws == 0 {
+            *self = if self.draws == 0 { *other } else { *self };
             return;
         }
-        let (n_a, n_b) = (a.draws as f64, b.draws as f64);
-        let n = n_a + n_b;
-        let delta = b.mean.minus(a.mean);
-        let step = exponent_of(delta);
-        let scaled = match step {
-            STEP => b.mean.times(DOWN).minus(a.mean.times(DOWN)),
-            0 => delta,
-            _ => delta * UP,
+        let (n_a, n_b) = (self.draws as f64, other.draws as f64);
+        let sum_exponent = self.sum_exponent.max(other.sum_exponent);
+        let [a, b] = [*self, *other]
+            .map(|side| if side.sum_exponent == sum_exponent { side.sum } else { side.sum.times(DOWN) });
+        let delta = b.over(n_b).join(a.over(n_a).times(-1.0));
+        let (step, scaled) = match exponent_of(delta.hi) {
+            step if sum_exponent == 0 => {
+                (step, Twofold { hi: scale(delta.hi, step), lo: scale(delta.lo, step) })
+            }
+            _ => (STEP, delta),
         };
-        let exponent = a.exponent.max(b.exponent).max(step);
-        let moved = Twofold { hi: scaled * scaled * (n_a / n) * n_b, lo: 0.0 };
+        let exponent = self.exponent.max(other.exponent).max(step);
+        let moved = scaled.squared().by(n_a).by(n_b).over(n_a + n_b);
         *self = Self {
-            draws: a.draws + b.draws,
-            mean: a.mean.plus(unscale(scaled * (n_b / n), step)),
-            squares: lower(a.squares, a.exponent, exponent)
-                .join(lower(b.squares, b.exponent, exponent))
+            draws: self.draws + other.draws,
+            sum: a.join(b),
+            sum_exponent,
+            squares: lower(self.squares, self.exponent, exponent)
+                .join(lower(other.squares, other.exponent, exponent))
                 .join(lower(moved, step, exponent)),
             exponent,
         };
@@ -115,7 +122,11 @@ impl Estimate {
 
     /// The mean X̄ = 1/n Σ Xᵢ; NaN if there are no draws.
     pub fn mean(&self) -> f64 {
-        if self.draws == 0 { f64::NAN } else { self.mean.hi + self.mean.lo }
+        if self.draws == 0 {
+            f64::NAN
+        } else {
+            unscale(self.sum.over(self.draws as f64).hi, self.sum_exponent)
+        }
     }
 
     /// The unbiased variance of one draw, s² = 1/(n−1) Σ (Xᵢ − X̄)²; `None` for fewer than two draws.
@@ -170,27 +181,27 @@ impl Estimate {
         (self.draws >= 2).then(|| (self.draws - 1) as f64)
     }
 
+    /// The moments of draws that are all the same.
+    fn of_equal(draw: f64, draws: u64) -> Self {
+        let sum_exponent = if draw.abs() < HUGE { 0 } else { STEP };
+        let sum = Twofold { hi: scale(draw, sum_exponent), lo: 0.0 }.by(draws as f64);
+        Self { draws, sum, sum_exponent, ..Self::new() }
+    }
+
     /// The moments of up to [`SLICE`] draws, in two passes: any shift near the mean will do in the second.
     fn of_slice(draws: &[f64]) -> Self {
+        let count = draws.len() as u64;
         if draws.iter().all(|draw| *draw == draws[0]) {
-            let mean = Twofold { hi: draws[0], lo: 0.0 };
-            return Self { draws: draws.len() as u64, mean, ..Self::new() };
+            return Self::of_equal(draws[0], count);
         }
         let n = draws.len() as f64;
-        let shift = lanes(draws, |x| [x, 0.0])[0] / n;
-        let [sum, sum_of_squares] = lanes(draws, |x| {
-            let d = x - shift;
-            [d, d * d]
-        });
-        let squares = sum_of_squares - sum * (sum / n);
+        let sum = total(draws, |x| x, two_sum);
+        let mean = sum.over(n);
+        let square = |x: f64| (x - mean.hi) * (x - mean.hi);
+        let squares = total(draws, square, fast_two_sum).plus(-n * mean.lo * mean.lo);
         // 2⁻⁹⁰⁰ and 2⁹⁰⁰: far enough inside f64 that no square in the sum was rounded away or overflowed
-        if (DOWN * DOWN.sqrt()..=UP * UP.sqrt()).contains(&squares) {
-            Self {
-                draws: draws.len() as u64,
-                mean: Twofold { hi: shift, lo: 0.0 }.plus(sum / n),
-                squares: Twofold { hi: squares, lo: 0.0 },
-                exponent: 0,
-            }
+        if (1.0 / HUGE..=HUGE).contains(&squares.hi) {
+            Self { draws: count, sum, sum_exponent: 0, squares, exponent: 0 }
         } else {
             Self::of_extreme_slice(draws)
         }
@@ -260,24 +271,29 @@ fn student_t(freedom: f64, tail: f64) -> f64 {
     }
 }
 
-/// Sums of both components of `f` over the draws, in eight interleaved lanes.
+/// The sum of `f` over the draws, in eight interleaved lanes, each with what rounding took from it as `two_sum` finds it.
 #[inline(always)]
-fn lanes(draws: &[f64], f: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
-    let (mut first, mut second) = ([0.0; 8], [0.0; 8]);
-    let (eights, rest) = draws.as_chunks::<8>();
-    for eight in eights {
-        for lane in 0..8 {
-            let [x, y] = f(eight[lane]);
-            first[lane] += x;
-            second[lane] += y;
+fn total(draws: &[f64], f: impl Fn(f64) -> f64, two_sum: impl Fn(f64, f64) -> (f64, f64)) -> Twofold {
+    let (mut sums, mut lost) = ([0.0; 8], [0.0; 8]);
+    let mut add = |draws: &[f64]| {
+        for ((sum, lost), &draw) in sums.iter_mut().zip(&mut lost).zip(draws) {
+            let (next, error) = two_sum(*sum, f(draw));
+            *sum = next;
+            *lost += error;
         }
-    }
-    for (lane, &draw) in rest.iter().enumerate() {
-        let [x, y] = f(draw);
-        first[lane] += x;
-        second[lane] += y;
-    }
-    [first.iter().sum(), second.iter().sum()]
+    };
+    let (eights, rest) = draws.as_chunks::<8>();
+    eights.iter().for_each(|eight| add(eight));
+    add(rest);
+    let lanes = sums.into_iter().zip(lost);
+    lanes.fold(Twofold::ZERO, |total, (hi, lo)| total.plus(lo).plus(hi))
+}
+
+/// [`two_sum`] in half the time where |a| ≥ |b|, and no worse than a plain sum elsewhere (Dekker).
+#[inline(always)]
+fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    (sum, b - (sum - a))
 }
 
 /// The exponent about which `delta`² is kept.
@@ -301,12 +317,17 @@ fn unscale(x: f64, exponent: i32) -> f64 {
     }
 }
 
+/// x / 2^exponent
+fn scale(x: f64, exponent: i32) -> f64 {
+    unscale(x, -exponent)
+}
+
 /// Squares kept about `from`, expressed about `to` ≥ `from`; what underflows is below any rounding.
 fn lower(squares: Twofold, from: i32, to: i32) -> Twofold {
     (from..to).step_by(STEP as usize).fold(squares, |kept, _| kept.times(DOWN).times(DOWN))
 }
 
-/// An unevaluated sum `hi + lo` with |lo| ≤ ½ ulp(hi): twice the digits of `f64` (Knuth's two-sum).
+/// An unevaluated sum `hi + lo` with |lo| ≤ ½ ulp(hi): twice the digits of `f64` (Dekker 1971).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Twofold {
     hi: f64,
@@ -316,25 +337,37 @@ struct Twofold {
 impl Twofold {
     const ZERO: Self = Self { hi: 0.0, lo: 0.0 };
 
+    fn normal(hi: f64, lo: f64) -> Self {
+        let (hi, lo) = two_sum(hi, lo);
+        Self { hi, lo: if hi.is_finite() { lo } else { 0.0 } }
+    }
+
     fn plus(self, x: f64) -> Self {
-        let sum = self.hi + x;
-        let added = sum - self.hi;
-        let lost = (self.hi - (sum - added)) + (x - added);
-        let low = self.lo + lost;
-        let hi = sum + low;
-        Self { hi, lo: if hi.is_finite() { low - (hi - sum) } else { 0.0 } }
+        let (sum, lost) = two_sum(self.hi, x);
+        if sum.is_finite() { Self::normal(sum, self.lo + lost) } else { Self { hi: sum, lo: 0.0 } }
     }
 
     fn join(self, other: Self) -> Self {
         self.plus(other.lo).plus(other.hi)
     }
 
-    fn minus(self, other: Self) -> f64 {
-        (self.hi - other.hi) + (self.lo - other.lo)
-    }
-
     /// Exact for powers of two.
     fn times(self, power: f64) -> Self {
         Self { hi: self.hi * power, lo: self.lo * power }
+    }
+
+    fn by(self, n: f64) -> Self {
+        let hi = self.hi * n;
+        Self::normal(hi, self.hi.mul_add(n, -hi) + self.lo * n)
+    }
+
+    fn over(self, n: f64) -> Self {
+        let hi = self.hi / n;
+        Self::normal(hi, ((-hi).mul_add(n, self.hi) + self.lo) / n)
+    }
+
+    fn squared(self) -> Self {
+        let hi = self.hi * self.hi;
+        Self::normal(hi, self.hi.mul_add(self.hi, -hi) + 2.0 * self.hi * self.lo)
     }
 }

@@ -10,6 +10,7 @@ use rand::distr::{Distribution, StandardUniform};
 
 use crate::density::Density;
 use crate::error::{Error, Result, require};
+use crate::extended::Extended;
 use crate::fast;
 use crate::run::Estimator;
 use crate::stream::Stream;
@@ -21,7 +22,9 @@ use crate::stream::Stream;
 ///
 /// # The ends
 /// U = k·2⁻⁵³ is never 1, so X is never infinite and its tail ends at λX = 53 ln 2 = 36.7368; in `f32`, where
-/// U = k·2⁻²⁴, at 24 ln 2 = 16.6355. On these grids 1 − U is exact, so the plain logarithm loses nothing.
+/// U = k·2⁻²⁴, at 24 ln 2 = 16.6355: one draw in 2⁵³ or 2²⁴. On these grids 1 − U is exact, so the plain logarithm loses nothing.
+/// Only where 36.7/λ itself is no number any more, for λ < 2.1e-307 in `f64` and λ < 4.9e-38 in `f32`, can a sample
+/// be infinite, which ends a run with an error.
 ///
 /// ```
 /// use unbiased::inversion::Exponential;
@@ -68,18 +71,31 @@ impl Exponential {
             return 0.0;
         }
         let (product, lost) = self.times(x);
-        // in halves: where e^(−λx) alone would underflow, a large λ can still bring the density back into range
-        let half = (-0.5 * product).exp();
-        self.rate * half * half * (1.0 - lost)
+        if product > FAR {
+            return self.pdf_far_out(product, lost);
+        }
+        let survival = (-product).exp();
+        self.rate * (survival - survival * lost)
     }
 
-    /// F(x) = P(X ≤ x) = 1 − e^(−λx), by `exp_m1`: 1 − e^(−λx) itself is 0 at x = 1e-17.
+    /// Where e^(−λx) alone may underflow, a large λ can still bring the density back into range: e^(−λx) is
+    /// e^(−512) once or twice times one that is far inside `f64`.
+    #[cold]
+    fn pdf_far_out(&self, product: f64, lost: f64) -> f64 {
+        let once = Extended::from(EXP_FAR[0]) + Extended::from(EXP_FAR[1]);
+        let (far, factor) = if product > 2.0 * FAR { (2.0 * FAR, once.squared()) } else { (FAR, once) };
+        let rest = (far - product).exp();
+        (Extended::from(self.rate) * factor * Extended::from(rest - rest * lost)).round()
+    }
+
+    /// F(x) = P(X ≤ x) = 1 − e^(−λx), by `exp_m1`: 1 − e^(−λx) itself is 0 at x = 1e-17. It does
+    /// not fall between neighbours, either.
     pub fn cdf(&self, x: f64) -> f64 {
         if x < 0.0 {
             return 0.0;
         }
-        let (product, lost) = self.times(x);
-        (-product).exp().mul_add(lost, -(-product).exp_m1())
+        // what rounding takes from λx costs half an ulp at most: a correction for it could only make F fall between neighbours
+        (-self.rate * x).exp_m1().abs()
     }
 
     /// P(X > x) = e^(−λx), where 1 − F(x) has no digits left for large x.
@@ -88,7 +104,8 @@ impl Exponential {
             return 1.0;
         }
         let (product, lost) = self.times(x);
-        (-product).exp() * (1.0 - lost)
+        let survival = (-product).exp();
+        survival - survival * lost
     }
 
     /// F⁻¹(u) = −ln(1 − u)/λ for any u in \[0, 1\], by `ln_1p`: for u = 1e-20, 1 − u rounds to 1. F⁻¹(1) = +∞.
@@ -101,6 +118,22 @@ impl Exponential {
         Ok((-u).ln_1p().abs() / self.rate)
     }
 
+    /// The x that is exceeded with probability u, −ln(u)/λ for any u in \[0, 1\]: F⁻¹(1 − u), which has no digits left for small u.
+    ///
+    /// # Errors
+    /// If u is not in \[0, 1\].
+    ///
+    /// ```
+    /// let exponential = unbiased::inversion::Exponential::new(1.0)?;
+    /// let x = exponential.inverse_survival(1e-100)?; // 1 − 1e-100 rounds to 1
+    /// assert!((exponential.survival(x) / 1e-100 - 1.0).abs() < 1e-13);
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    pub fn inverse_survival(&self, u: f64) -> Result<f64> {
+        require_probability(u)?;
+        Ok(u.ln().abs() / self.rate)
+    }
+
     /// λx, and what rounding took from it: an exponent near 700 that is off by half an ulp costs 300 ulp of its exponential.
     fn times(&self, x: f64) -> (f64, f64) {
         let product = self.rate * x;
@@ -108,6 +141,12 @@ impl Exponential {
         (product, if lost.is_finite() { lost } else { 0.0 })
     }
 }
+
+/// Where the density is computed with care.
+const FAR: f64 = 512.0;
+
+/// e^(−512) as an unevaluated sum.
+const EXP_FAR: [f64; 2] = [4.377491037053051e-223, 2.706079830228623e-239];
 
 fn require_probability(u: f64) -> Result<f64> {
     require("the probability u", u, (0.0..=1.0).contains(&u), "in [0, 1]")
@@ -125,7 +164,8 @@ impl Distribution<f32> for Exponential {
     #[inline]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f32 {
         let u: f32 = StandardUniform.sample(rng);
-        (1.0 - u).ln().abs() / self.rate as f32
+        // divided in f64: a rate beyond f32 would make 0/0 of U = 0, or lose digits
+        (f64::from((1.0 - u).ln().abs()) / self.rate) as f32
     }
 }
 
@@ -162,7 +202,8 @@ impl Estimator for Exponential {
 /// and no starting guess, and a jump or a flat is nothing special. (Worksheet 1.1, "any other one-dimensional distribution"; Devroye,
 /// *Non-Uniform Random Variate Generation*, section II.2.)
 ///
-/// As a [`Distribution`] it draws F⁻(U). A sample is NaN where F turns out not to be a cdf, which ends a run with an
+/// As a [`Distribution`] it draws F⁻(U), with 2⁻⁵⁴ for U = 0, so that the least and the greatest sample have probability 2⁻⁵³ each
+/// and are finite wherever F⁻ is there. A sample is NaN where F turns out not to be a cdf, which ends a run with an
 /// error; [`inverse_cdf`](Self::inverse_cdf) says what was wrong.
 ///
 /// ```

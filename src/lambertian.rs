@@ -12,6 +12,7 @@ use rand::distr::Distribution;
 
 use crate::density::{Density, ratio};
 use crate::error::{Result, require};
+use crate::extended::Extended;
 use crate::hemisphere::{Direction, Hemisphere};
 use crate::run::{Estimator, from_fn};
 
@@ -188,17 +189,17 @@ impl Light for CosinePower {
     }
 
     fn variance(&self, surface: Lambertian, hemisphere: Hemisphere) -> f64 {
-        let a = self.a;
-        // a + 1, a + 3/2 and a + 2 are exact where they are small, so nothing cancels; 2a + 3 could overflow
+        let [a, one, half] = [self.a, 1.0, 0.5].map(Extended::from);
+        // the variance is (ρ zero/(a + 2))²/room
         let (zero, room) = match hemisphere {
-            Hemisphere::Uniform => (a + 1.0, 0.5 * (a + 1.5)),
-            Hemisphere::Cosine => (a, a + 1.0),
+            Hemisphere::Uniform => (a + one, half * (a + one + half)),
+            Hemisphere::Cosine => (a, a + one),
         };
-        let deviation = surface.albedo * (zero / (a + 2.0));
-        if deviation == 0.0 {
+        let deviation = zero * surface.albedo.into() / (a + one + one);
+        if deviation.is_zero() {
             0.0 // ρ = 0 has no variance even where it would be infinite
-        } else if room > 0.0 {
-            deviation * (deviation / room)
+        } else if room.is_positive() {
+            (deviation.squared() / room).round()
         } else {
             f64::INFINITY
         }
@@ -241,16 +242,17 @@ impl Light for RingLight {
     }
 
     fn reflected(&self, surface: Lambertian) -> f64 {
-        surface.albedo * self.width * self.width
+        let width = Extended::from(self.width);
+        (width.squared() * surface.albedo.into()).round()
     }
 
     fn variance(&self, surface: Lambertian, hemisphere: Hemisphere) -> f64 {
-        let width = self.width;
-        let square = (surface.albedo * width) * (surface.albedo * width);
-        // mul_add rounds once, so 1 − ε² keeps its digits near ε = 1
-        match hemisphere {
-            Hemisphere::Uniform => square * width * (-3.0f64).mul_add(width, 4.0) / 3.0,
-            Hemisphere::Cosine => square * (-width).mul_add(width, 1.0),
-        }
+        let [albedo, width, three] = [surface.albedo, self.width, 3.0].map(Extended::from);
+        let square = (albedo * width).squared();
+        let variance = match hemisphere {
+            Hemisphere::Uniform => square * width * (Extended::ONE + three - three * width) / three,
+            Hemisphere::Cosine => square * (Extended::ONE - width.squared()),
+        };
+        variance.round()
     }
 }

@@ -56,6 +56,7 @@ pub mod check;
 pub mod density;
 pub mod error;
 pub mod estimate;
+mod extended;
 pub mod fast;
 #[cfg(feature = "workbook")]
 pub mod figure;
@@ -67,6 +68,7 @@ pub mod rectangle;
 pub mod roulette;
 pub mod run;
 pub mod stream;
+pub mod trade;
 #[cfg(feature = "workbook")]
 pub mod workbook;
 

@@ -1,6 +1,6 @@
 //! Does the gallery predict what its mistakes do, and does the diagnosis name the right one?
 //!
-//! False alarms. Runs against predictions: some 800 z-tests at 7.5 std errors, 6.4e-14 each, so 5e-11 in all; they see a prediction that is off by 7.5 std
+//! False alarms. Runs against predictions: some 1300 z-tests at 7.5 std errors, 6.4e-14 each, so 9e-11 in all; they see a prediction that is off by 7.5 std
 //! errors of 1e5 draws, about 1 %, and quadrature sees 1e-7 where a draw takes few random numbers. Right estimators diagnosed: 1e-9 by design for one whose
 //! draws' means are normal; all seeds of this file are pinned, so that its 200 runs raise none. Refutations: α = 1e-12 each, and no
 //! false alarm is possible, since all of those are wrong. Rates of the diagnosis are measured, and the margins to the limits asserted are several
@@ -12,14 +12,17 @@ mod common;
 
 use std::f64::consts::{FRAC_1_PI, FRAC_1_SQRT_2, PI, TAU};
 
+use glam::DVec3;
 use proptest::prelude::*;
 use rand::distr::Distribution;
+use unbiased::box_room::{BoxRoom, Face, Scene, Vertex, form_factor, nearest_hit, visible};
 use unbiased::check::{
     self, Attempt, Diagnosis, Finding, Judgement, Mistake, Probe, Sky, Statistic, Surface, Topic, Unbiased,
     Verdict,
 };
 use unbiased::hemisphere::Hemisphere;
 use unbiased::inversion::Exponential;
+use unbiased::paths::{Bounces, FindLight, Paths};
 use unbiased::rectangle::Rectangle;
 use unbiased::roulette::Roulette;
 use unbiased::{Budget, Error, Estimator, Stream, estimate, from_fn};
@@ -141,7 +144,42 @@ fn right() -> Vec<(&'static str, Attempt<'static>)> {
                 light
             }),
         ),
+        ("cosine paths, the light sampled", library_paths(Hemisphere::Cosine)),
+        ("uniform paths, the light sampled", library_paths(Hemisphere::Uniform)),
+        ("one light sample a path", Attempt::paths(shared_sample)),
     ]
+}
+
+/// The crate's own paths.
+fn library_paths(directions: Hemisphere) -> Attempt<'static> {
+    Attempt::paths(move |room, bounces, rng| {
+        let (first, last) = bounces.into_inner();
+        let bounces = if first == last { Bounces::Exactly(last) } else { Bounces::UpTo(last) };
+        let paths = Paths::new(*room, bounces, directions, FindLight::BySampling).unwrap();
+        paths.light_from(&room.point(), rng)
+    })
+}
+
+/// The same point of the light for all vertices of a path: that looks like a mistake, and is none.
+fn shared_sample(room: &BoxRoom, bounces: std::ops::RangeInclusive<u32>, rng: &mut Stream) -> f64 {
+    let h = room.scene().light_half_width;
+    let y = DVec3::new(h * (2.0 * rng.uniform() - 1.0), h * (2.0 * rng.uniform() - 1.0), Face::ROOM_HEIGHT);
+    let (mut vertex, mut throughput, mut light) = (room.point(), 1.0, 0.0);
+    for k in 0..=*bounces.end() {
+        if bounces.contains(&k) && !room.is_light(&vertex) {
+            light += throughput * room.emitted(&vertex);
+        }
+        let way = y - vertex.position();
+        let cosines = vertex.normal().dot(way) * way.z;
+        throughput *= room.albedo(&vertex);
+        if bounces.contains(&(k + 1)) && cosines > 0.0 && visible(&vertex, y) {
+            let solid = cosines / way.length_squared().powi(2) * room.light_area();
+            light += throughput / PI * room.scene().radiance * solid;
+        }
+        let direction = Hemisphere::Cosine.sample(rng);
+        vertex = nearest_hit(&vertex, vertex.to_room(&direction)).unwrap();
+    }
+    light
 }
 
 #[test]
@@ -259,6 +297,137 @@ fn probes_have_the_right_truths() {
     close(Probe::bounces(0.8).unwrap(), 4.0);
     close(Probe::furnace(0.6, 2.5, Some(3)).unwrap(), 2.5 * 2.176);
     close(Probe::furnace(0.6, 2.5, None).unwrap(), 6.25);
+
+    let paths = |scene: Scene, bounces| Probe::paths(BoxRoom::new(scene).unwrap(), bounces).unwrap();
+    close(paths(Scene::default(), 1..=1), 8.0 * 0.03410679489971157);
+    let off = (paths(Scene::default(), 2..=2).truth() / 0.039903921548169116 - 1.0).abs();
+    assert!(off <= 1e-12, "{off:e}");
+    // p = (0.7, 0.1, 0) sees the light past the cube's upper edge x = ½, z = 1, four times as high as that: from x = 0.7 − 4 · 0.2 on
+    let seen = [[-0.1, -0.8], [0.8, -0.8], [0.8, 0.8], [-0.1, 0.8]].map(|[x, y]| DVec3::new(x, y, 4.0));
+    let truth = 0.61 * 7.0 * form_factor(&seen, DVec3::new(0.7, 0.1, 0.0), DVec3::Z);
+    close(paths(Scene { point: [0.7, 0.1, 0.0], ..ODD }, 1..=1), truth);
+    let furnace = Scene { light_half_width: 0.0, emission: 2.5, ..ODD };
+    close(paths(furnace, 0..=2), 2.5 * (1.0 + 0.37 + 0.37 * 0.61));
+    let even = |albedo| Scene { wall_albedo: albedo, cube_albedo: albedo, ..furnace };
+    close(paths(even(0.7), 3..=3), 2.5 * 0.343);
+    close(paths(even(0.8), 0..=6), 2.5 * (1.0 - 0.2097152) / 0.2);
+}
+
+/// Two bounces by a rule of its own over the walls' points: Simpson's with n² of them and 4n², extrapolated.
+#[test]
+fn the_two_bounce_part_is_integrated_to_1e_10() {
+    let simpson = |room: &BoxRoom, n: i32| {
+        let weight =
+            |i: i32| f64::from(if i == 0 || i == n { 1 } else { 2 + 2 * (i % 2) }) / 3.0 / f64::from(n);
+        let p = room.point().position();
+        let mut sum = 0.0;
+        for i in 0..=n {
+            for j in 0..=n {
+                let (a, z) =
+                    (-2.0 + 4.0 * f64::from(i) / f64::from(n), 1.0 + 3.0 * f64::from(j) / f64::from(n));
+                for (point, normal) in [
+                    (DVec3::new(-2.0, a, z), DVec3::X),
+                    (DVec3::new(2.0, a, z), DVec3::NEG_X),
+                    (DVec3::new(a, -2.0, z), DVec3::Y),
+                    (DVec3::new(a, 2.0, z), DVec3::NEG_Y),
+                ] {
+                    let (way, seen) = (point - p, form_factor(&room.light_corners(), point, normal));
+                    let cosines = way.z * normal.dot(-way) / way.length_squared().powi(2);
+                    sum += 12.0 * weight(i) * weight(j) * seen * cosines / PI;
+                }
+            }
+        }
+        sum
+    };
+    for scene in [ODD, Scene { light_half_width: 1.0, point: [-0.4, 0.45, 1.0], ..ODD }] {
+        let room = BoxRoom::new(scene).unwrap();
+        let extrapolated = (16.0 * simpson(&room, 160) - simpson(&room, 80)) / 15.0;
+        let off =
+            (Probe::paths(room, 2..=2).unwrap().truth() / (0.37 * 0.61 * 7.0 * extrapolated) - 1.0).abs();
+        println!("{off:e}");
+        assert!(off <= 1e-10, "{off:e}");
+    }
+}
+
+/// What is hidden, for p anywhere on a face, against a midpoint sum of n² visible points: every cell that the shadow's or the horizon's edge crosses, at most 5 edges
+/// of 2n cells, is wrong by its largest value at most, cos θ cos θ′/(π r²) < 1/π at r > 1; the others by the rule's error, below 1e-4 of that.
+#[test]
+fn the_cubes_shadow_is_that_of_its_rays() {
+    let n = 500;
+    let (mut hidden, mut stream) = (0, Stream::new(pinned(9000), 0));
+    for round in 0..120 {
+        let mut u = || stream.uniform();
+        let (x, y, z) = (3.9 * (u() - 0.5), 3.9 * (u() - 0.5), u());
+        let point = match round % 4 {
+            0 => [2.0, y, z],
+            1 => [x, -2.0, z],
+            2 => [-0.5, y / 4.0, z],
+            _ => [x, y, 0.0],
+        };
+        let Ok(room) = BoxRoom::new(Scene { point, ..ODD }) else { continue };
+        let (p, h) = (room.point(), ODD.light_half_width);
+        let at = |i: i32| h * ((2.0 * f64::from(i) + 1.0) / f64::from(n) - 1.0);
+        let (mut seen, mut most, mut dark) = (0.0, 0.0f64, 0);
+        for i in 0..n {
+            for j in 0..n {
+                let light = DVec3::new(at(i), at(j), 4.0);
+                let way = light - p.position();
+                let cosines = p.normal().dot(way) * way.z / way.length_squared().powi(2);
+                if cosines > 0.0 && visible(&p, light) {
+                    seen += cosines;
+                    most = most.max(cosines);
+                } else {
+                    dark += 1;
+                }
+            }
+        }
+        let cell = room.light_area() / f64::from(n * n) / PI;
+        let allowed = (10.0 * f64::from(n) + 1e-4 * f64::from(n * n)) * most * cell;
+        let truth = Probe::paths(room, 1..=1).map_or(0.0, |probe| probe.truth() / (room.albedo(&p) * 7.0));
+        let off = (truth - seen * cell).abs();
+        assert!(off <= allowed, "{point:?}: {truth}, {}, {allowed}", seen * cell);
+        hidden += i32::from(dark > 0 && dark < n * n);
+    }
+    println!("{hidden} points see a part of the light");
+    assert!(hidden >= 30);
+}
+
+/// A scene with odd numbers, in which no two mistakes look alike.
+const ODD: Scene = Scene {
+    wall_albedo: 0.61,
+    cube_albedo: 0.37,
+    radiance: 7.0,
+    light_half_width: 0.8,
+    emission: 0.0,
+    point: [0.2, -0.1, 1.0],
+};
+
+/// On other scenes than the probes' own, from every kind of face and after several numbers of bounces.
+#[test]
+fn predictions_of_paths_hold_elsewhere() {
+    let furnace = Scene { light_half_width: 0.0, emission: 1.3, ..ODD };
+    let probes: Vec<_> = [
+        (Scene { light_half_width: 0.3, point: [-0.3, 0.4, 1.0], ..ODD }, 1..=2),
+        (Scene { point: [-1.2, 0.7, 0.0], ..ODD }, 1..=1),
+        (Scene { point: [2.0, 0.4, 0.3], light_half_width: 1.9, ..ODD }, 0..=1),
+        (Scene { point: [0.5, 0.2, 0.4], ..ODD }, 1..=1),
+        (furnace, 1..=2),
+        (Scene { wall_albedo: 0.55, cube_albedo: 0.55, point: [1.0, 1.0, 4.0], ..furnace }, 1..=4),
+    ]
+    .into_iter()
+    .map(|(scene, bounces)| Probe::paths(BoxRoom::new(scene).unwrap(), bounces).unwrap())
+    .collect();
+    for (index, mistake) in Topic::Paths.mistakes().iter().enumerate() {
+        let seed = pinned(8000 + index as u64);
+        for measurement in check::measure_on(mistake.wrong(), &probes, 20_000, seed).unwrap() {
+            let (ratio, error) = measurement.ratio();
+            let predicted = mistake.ratio(&measurement.probe);
+            let off = (ratio - predicted).abs();
+            let allowed = 7.5 * error + 1e-12 * predicted.abs();
+            let (name, probe) = (mistake.name(), measurement.probe);
+            assert!(off <= allowed, "“{name}” at {probe}: {ratio} ± {error}, {predicted}");
+        }
+    }
 }
 
 /// The table of known ratios, worked out independently, to the digits that it gives.
@@ -369,6 +538,43 @@ fn predictions_agree_with_the_known_table() {
     let all = Probe::furnace(0.6, 1.0, None).unwrap();
     one(Topic::Furnace, "roulette uncompensated", all, 0.769);
     one(Topic::Furnace, "stops at ten bounces", all, 0.99637);
+
+    let mut path = |name: &'static str, scene: Scene, bounces, ratio: f64| {
+        let probe = Probe::paths(BoxRoom::new(scene).unwrap(), bounces).unwrap();
+        one(Topic::Paths, name, probe, ratio);
+    };
+    for (name, once, twice) in [
+        ("the light's area forgotten", 0.3906, 0.3906), // 1/2.56
+        ("multiplied by the light's density", 0.1526, 0.1526),
+        ("the light's half-width for its width", 0.25, 0.25),
+        ("the light found by chance and sampled", 2.0, 2.0),
+        ("1/π of the BRDF forgotten at the light sample", 3.1416, 3.1416),
+        ("1/π of the BRDF forgotten at every bounce", 3.1416, 9.8696),
+        ("the last vertex's albedo forgotten", 2.7027, 1.6393), // 1/0.37, 1/0.61
+        ("p's albedo at every vertex", 1.0, 0.6066),
+        ("the throughput never multiplied", 1.0, 2.7027),
+        ("roulette uncompensated", 1.0, 0.8),
+        ("roulette compensated twice", 1.0, 1.25),
+    ] {
+        path(name, ODD, 1..=1, once);
+        path(name, ODD, 2..=2, twice);
+    }
+    path("rays without light left out of n", Scene::default(), 1..=1, 29.3197); // 1/F
+    path("one bounce too many", Scene::default(), 1..=1, 0.1462); // 0.039904/0.272854
+    path("one bounce too few", Scene::default(), 2..=2, 6.8378);
+    path("one bounce too many", Scene::default(), 2..=2, 0.5578); // 0.33502 − 0.31276, over 0.039904: by two other programs, to 3e-4
+    let paths_furnace =
+        Scene { light_half_width: 0.0, emission: 0.4, wall_albedo: 0.7, cube_albedo: 0.7, ..ODD };
+    for (name, ratio) in [
+        ("cos θ forgotten, uniform directions", 8.0),
+        ("cosine directions, the uniform weight", 2.3704),
+        ("cosine directions, cos θ kept", 0.2963),
+        ("roulette uncompensated", 0.512),
+        ("all bounces up to k where exactly k are asked for", 7.3848), // (1 + 0.7 + 0.49 + 0.343)/0.343
+        ("the throughput replaced, not multiplied", 2.0408),
+    ] {
+        path(name, paths_furnace, 3..=3, ratio);
+    }
 
     let mut compared = 0;
     for (topic, name, probes, ratios) in probe_sets {
@@ -584,6 +790,7 @@ fn an_unknown_mistake_is_called_unknown() {
         Attempt::roulette(|x, p, rng| if rng.uniform() < p { x(rng) / p.powf(0.7) } else { 0.0 }),
         Attempt::bounces(|p, rng| 2.0 * ((1.0 - rng.uniform()).ln() / p.ln()).floor()),
         Attempt::furnace(|albedo, emission, bounces, _| emission * albedo * f64::from(bounces.unwrap_or(7))),
+        Attempt::paths(|room, bounces, rng| 0.93 * shared_sample(room, bounces, rng)),
     ];
     for (index, attempt) in attempts.iter().enumerate() {
         let measured = check::measure(attempt, DRAWS, pinned(3000 + index as u64)).unwrap();
@@ -625,6 +832,8 @@ fn range(probe: &Probe) -> [f64; 2] {
         Topic::Rectangle => [-20.0 * size, 20.0 * size],
         Topic::Hemisphere => [0.0, 60.0 * size],
         Topic::Roulette | Topic::Furnace => [0.0, 40.0 * size],
+        // 1/0.00998 is what a path brings that happens on the light after two bounces on the sheet
+        Topic::Paths => [0.0, 110.0 * size],
     }
 }
 
@@ -822,6 +1031,24 @@ fn bad_input_is_an_error() {
     let infinite = Attempt::exponential(|_, _| f64::INFINITY);
     assert!(matches!(check::measure(&infinite, 10, 1), Err(Error::Draw { .. })));
     assert!(gallery().next().unwrap().expected(&foreign).is_nan());
+
+    let room = |scene: Scene| BoxRoom::new(scene).unwrap();
+    let furnace = Scene { light_half_width: 0.0, emission: 1.0, ..ODD };
+    for (scene, bounces, part) in [
+        (ODD, 3..=3, "no exact value"),
+        (ODD, 0..=0, "the light at p must be positive"),
+        (ODD, 1..=65, "the last bounce must be at most 64, not 65"),
+        (ODD, std::ops::RangeInclusive::new(3, 2), "the first bounce must be at most the last one, not 3"),
+        (Scene { point: [1.0, 1.0, 0.0], ..ODD }, 2..=2, "no exact value"),
+        (Scene { light_half_width: 1.1, ..ODD }, 2..=2, "no exact value"),
+        (Scene { emission: 1.0, ..ODD }, 1..=1, "no exact value"),
+        (furnace, 3..=3, "no exact value"),
+        (Scene { point: [1.0, 1.0, 0.0], ..furnace }, 2..=2, "no exact value"),
+        (Scene { emission: 0.0, ..furnace }, 1..=1, "the light at p must be positive"),
+    ] {
+        let error = Probe::paths(room(scene), bounces.clone()).unwrap_err().to_string();
+        assert!(error.contains(part), "{bounces:?}: {error}");
+    }
 }
 
 /// A constant attempt has no variance: rounding is the error, and f32's is forgiven.
@@ -851,6 +1078,23 @@ proptest! {
             Probe::furnace(a, b, bounces),
         ].into_iter().flatten() {
             prop_assert!(!probe.truth().is_nan());
+        }
+    }
+
+    #[test]
+    fn no_paths_probe_panics(
+        [a, b, h, x, y] in any::<[f64; 5]>().prop_map(|all| all.map(|x| x % 2.0)), bounces in any::<[u8; 2]>(), face in 0usize..11,
+    ) {
+        let [low, high] = Face::ALL[face].bounds();
+        let point = DVec3::new(x, y, x.abs() + y.abs()).clamp(low, high).to_array();
+        let numbers = Scene { wall_albedo: a.abs(), cube_albedo: b.abs(), light_half_width: h.abs(), point, ..Scene::default() };
+        for emission in [0.0, 1.0] {
+            let [first, last] = bounces.map(|k| u32::from(k) % 5);
+            let Ok(room) = BoxRoom::new(Scene { emission, ..numbers }) else { continue };
+            if let Ok(probe) = Probe::paths(room, first..=last) {
+                prop_assert!(probe.truth() > 0.0);
+                prop_assert!(Vertex::at(point).is_ok());
+            }
         }
     }
 
@@ -907,6 +1151,19 @@ fn some_parameters_hide_mistakes() {
     for name in ["L forgotten", "L multiplied into the throughput"] {
         assert!(bright.contains(&name), "{bright:?}");
     }
+    let path = |scene: Scene, bounces| {
+        hidden(Topic::Paths, Probe::paths(BoxRoom::new(scene).unwrap(), bounces).unwrap())
+    };
+    let of_area_1 = path(Scene::default(), 1..=1);
+    for name in ["the light's area forgotten", "multiplied by the light's density", "occlusion ignored"] {
+        assert!(of_area_1.contains(&name), "{of_area_1:?}");
+    }
+    let alike = path(Scene { wall_albedo: 0.37, ..ODD }, 2..=2);
+    assert!(alike.contains(&"p's albedo at every vertex"), "{alike:?}");
+    let glow = Scene { light_half_width: 0.0, emission: 1.0, wall_albedo: 0.6, cube_albedo: 0.6, ..ODD };
+    let furnace = path(glow, 0..=3);
+    println!("a furnace hides {} mistakes with paths: {furnace:?}", furnace.len());
+    assert!(furnace.len() >= 15 && furnace.contains(&"a mirror bounce for a diffuse one"), "{furnace:?}");
     let even = hidden(Topic::Hemisphere, Probe::hemisphere(Sky::Even, 0.61).unwrap());
     println!("a constant light hides {}: {even:?}", even.len());
     assert!(even.len() >= 6);

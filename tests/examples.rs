@@ -87,6 +87,11 @@ fn without_seconds(mut row: Value) -> Value {
     row
 }
 
+/// Whether a file may differ from run to run: it holds timings, as the page does, or is a PDF, whose library numbers its objects in the order of a hash map.
+fn changes(name: &str) -> bool {
+    name.ends_with(".pdf") || name == "index.html" || name.contains("seconds") || name.starts_with("trade_")
+}
+
 #[test]
 fn the_worksheet_takes_in_every_example() {
     let of_examples: BTreeSet<String> = examples().iter().map(|name| name[1..4].replace('_', ".")).collect();
@@ -118,7 +123,8 @@ fn every_row_has_all_keys_and_every_answer_its_truth() {
             let (estimate, draws) = (row["estimate"].as_f64().unwrap(), row["draws"].as_u64().unwrap());
             assert!(draws > 0 && row["seed"].as_u64() == Some(1) && row["seconds"].as_f64().unwrap() >= 0.0);
             if row["kind"] == "answer" {
-                let truth = row["truth"].as_f64().unwrap();
+                // without a closed form there is nothing to compare with
+                let Some(truth) = row["truth"].as_f64() else { continue };
                 let rounding = 8.0 * f64::EPSILON * truth.abs();
                 assert!((estimate - truth).abs() <= 4.0 * std_error + rounding, "z beyond 4: {row}");
             }
@@ -147,7 +153,7 @@ fn each_example_alone_says_what_the_worksheet_says() {
             };
             for (a, b) in files(&mut here).iter().zip(files(&mut there)) {
                 assert_eq!(a.file_name(), b.file_name());
-                if a.extension().is_some_and(|ending| ending == "pdf") {
+                if changes(&a.file_name().unwrap().to_string_lossy()) {
                     continue;
                 }
                 assert!(fs::read(a).unwrap() == fs::read(&b).unwrap(), "{} differs", a.display());
@@ -193,8 +199,7 @@ fn the_worksheet_is_the_same_bytes_every_time() {
     rows(&run("worksheet", &["--json", "--out", again.to_str().unwrap()]));
     let (first, again) = (files(first), files(&again));
     assert_eq!(first.keys().collect::<Vec<_>>(), again.keys().collect::<Vec<_>>());
-    // the PDF library numbers its objects in the order of a hash map
-    for (name, bytes) in first.iter().filter(|(name, _)| !name.ends_with(".pdf")) {
+    for (name, bytes) in first.iter().filter(|(name, _)| !changes(name)) {
         assert!(again[name] == *bytes, "{name} differs");
     }
     // and as committed, where the repository is at hand
@@ -203,6 +208,9 @@ fn the_worksheet_is_the_same_bytes_every_time() {
         let committed = files(&committed);
         for (name, bytes) in first.iter().filter(|(name, _)| name.ends_with(".svg") || name.ends_with(".csv"))
         {
+            if changes(name) {
+                continue;
+            }
             assert!(committed.get(name) == Some(bytes), "figures/{name} is not what is drawn now");
         }
     }
@@ -442,6 +450,9 @@ fn the_readers_estimator_is_judged_and_its_mistake_named() {
     assert_eq!(code, Some(0), "{said}");
     assert!(said.contains("consistent with:\n1. uniform directions, the cosine weight"), "{said}");
     assert!(said.contains("To mend it: "), "{said}");
+    let (code, said) = check_mine(&["--question", "4.3", "--draws", "200000"], "");
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("seed 1.\nNothing wrong seen"), "{said}");
 }
 
 #[test]

@@ -25,10 +25,12 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use rand::distr::Distribution;
 use statrs::distribution::{Beta, ContinuousCDF, DiscreteCDF, Gamma, Normal, Poisson, Weibull};
+use unbiased::box_room::{BoxRoom, Scene};
 use unbiased::check::{self, Unbiased, Verdict, distributed_as, exactly};
 use unbiased::hemisphere::{Direction, Hemisphere};
 use unbiased::inversion::{Exponential, Inversion};
 use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
+use unbiased::paths::{Bounces, FindLight, Paths, reflected};
 use unbiased::rectangle::Rectangle;
 use unbiased::roulette::{LightModel, Roulette};
 use unbiased::{Density, Estimator, from_fn, ratio};
@@ -47,7 +49,7 @@ const COARSE: f64 = 1e-2;
 /// A test's name, its cases at [`FINE`] and at [`COARSE`], and its comparisons of distributions, each at [`ALPHA`].
 type Row = (&'static str, u32, u32, u32);
 
-const TABLE: [Row; 28] = [
+const TABLE: [Row; 33] = [
     // section 1
     ("exponential_through_its_cdf", 1, 24, 0),
     ("exponential_in_single_precision", 1, 24, 0),
@@ -70,6 +72,12 @@ const TABLE: [Row; 28] = [
     ("lambertian_over_the_whole_sphere", 0, 12, 0),
     ("lambertian_in_a_ring", 0, 12, 0), // light found by chance: CV² up to 24
     ("samplers_of_section_3", 0, 0, 2),
+    // section 4
+    ("paths_of_one_bounce", 1, 16, 0),
+    ("paths_of_two_bounces", 1, 8, 0),
+    ("paths_of_two_bounces_by_chance", 0, 4, 0), // CV² around 20
+    ("paths_in_a_furnace", 1, 16, 0),
+    ("reflected_light", 1, 8, 0),
     // section 5
     ("roulette_on_an_estimator", 1, 24, 0),
     ("roulette_that_seldom_goes_on", 0, 8, 0), // CV² up to 20
@@ -83,12 +91,14 @@ const TABLE: [Row; 28] = [
 ];
 
 /// False alarms of the other files with random tests, by their own account or, where they give only α, by the number of their tests.
-const OTHERS: [(&str, f64); 8] = [
+const OTHERS: [(&str, f64); 10] = [
     ("inversion", 6e-11),
     ("rectangle", 3.6e-10),
     ("hemisphere", 3e-11),
     ("lambertian", 1e-10),
     ("roulette", 3e-10),
+    ("box room", 3e-15),
+    ("paths", 4e-13),
     ("estimate and run", 1.5e-11),
     ("diagnose, predictions", 5e-11),
     ("check, at its own α", 4e-11),
@@ -611,6 +621,130 @@ proptest! {
         assert_exactly(&cube.uniform_estimator(|w| ring.incoming(w)), 2, truth, Some(uniform), albedo);
         assert_exactly(&cube.cosine_estimator(|w| ring.incoming(w)), 2, truth, Some(cosine), albedo);
     }
+}
+
+// ---- section 4 -----------------------------------------------------------------------------------------------------
+
+/// Directions drawn uniformly or by cosine, and the light by chance or sampled.
+fn ways() -> impl Strategy<Value = (Hemisphere, FindLight)> + Clone {
+    (prop::sample::select(Hemisphere::ALL.to_vec()), prop::sample::select(FindLight::ALL.to_vec()))
+}
+
+/// The largest cos θ/(π p(ω)).
+fn most_weight(directions: Hemisphere) -> f64 {
+    if directions == Hemisphere::Cosine { 1.0 } else { 2.0 }
+}
+
+/// The worksheet's room with other albedos and another radiance.
+fn rooms() -> impl Strategy<Value = Scene> + Clone {
+    (0.05..1.0, 0.05..1.0, log_range(1e-2, 1e2)).prop_map(|(wall_albedo, cube_albedo, radiance)| Scene {
+        wall_albedo,
+        cube_albedo,
+        radiance,
+        ..Scene::default()
+    })
+}
+
+fn paths(scene: Scene, bounces: Bounces, (directions, light): (Hemisphere, FindLight)) -> Paths {
+    Paths::new(BoxRoom::new(scene).unwrap(), bounces, directions, light).unwrap()
+}
+
+/// From anywhere on the cube's top, 3 m below the light: f_r L_e A cos θ cos θ′/r² ≤ ρ L_e A/9π. The truth is a sum of four rectangles that
+/// have a corner above p (Howell's B-3).
+#[test]
+fn paths_of_one_bounce() {
+    let places = (-0.5..0.5, -0.5..0.5, 0.8..2.0);
+    let corner = |a: f64, b: f64| {
+        let (a, b) = (a / 3.0, b / 3.0);
+        let (sa, sb) = ((1.0 + a * a).sqrt(), (1.0 + b * b).sqrt());
+        (a / sa * (b / sa).atan() + b / sb * (a / sb).atan()) / (2.0 * PI)
+    };
+    certify(
+        "paths_of_one_bounce",
+        (rooms(), places, ways(), any::<bool>()),
+        |(room, (x, y, h), way, up_to)| {
+            let (x, y, h): (f64, f64, f64) = (x, y, h);
+            let scene = Scene { light_half_width: h, point: [x, y, 1.0], ..room };
+            let part =
+                corner(h - x, h - y) + corner(h + x, h - y) + corner(h - x, h + y) + corner(h + x, h + y);
+            let scale = scene.cube_albedo * scene.radiance;
+            let most = match way.1 {
+                FindLight::ByChance => most_weight(way.0),
+                FindLight::BySampling => 4.0 * h * h / (9.0 * PI),
+            };
+            // p itself emits nothing
+            let bounces = if up_to { Bounces::UpTo(1) } else { Bounces::Exactly(1) };
+            case(paths(scene, bounces, way), scale * part, scale * most)
+        },
+    );
+}
+
+/// The part of two bounces in the worksheet's room, for albedos and a radiance of 1.
+const TWO_BOUNCES: f64 = 0.039903921548169116 / 4.0;
+
+/// Two bounces with the light sampled: it is 1.5 m away from every wall, so that f_r L_e A cos θ cos θ′/r² ≤ ρ L_e/2.25π there.
+#[test]
+fn paths_of_two_bounces() {
+    certify("paths_of_two_bounces", (rooms(), ways()), |(scene, (directions, _))| {
+        let scale = scene.cube_albedo * scene.wall_albedo * scene.radiance;
+        let twice = paths(scene, Bounces::Exactly(2), (directions, FindLight::BySampling));
+        case(twice, scale * TWO_BOUNCES, scale * most_weight(directions) / (2.25 * PI))
+    });
+}
+
+/// A light of half-width 3/2, its truth by another program's quadrature (24 nodes a side in 3840 pieces of the walls).
+#[test]
+fn paths_of_two_bounces_by_chance() {
+    certify("paths_of_two_bounces_by_chance", (rooms(), ways()), |(room, (directions, _))| {
+        let scene = Scene { light_half_width: 1.5, ..room };
+        let scale = scene.cube_albedo * scene.wall_albedo * scene.radiance;
+        let twice = paths(scene, Bounces::Exactly(2), (directions, FindLight::ByChance));
+        case(twice, scale * TWO_BOUNCES_LARGE, scale * most_weight(directions).powi(2))
+    });
+}
+
+const TWO_BOUNCES_LARGE: f64 = 0.09217232606665292;
+
+/// ρᵏ after k bounces; up to K of them X ≤ Σ (2ρ)ᵏ, and q/(q − ρ) for all with cosine directions.
+#[test]
+fn paths_in_a_furnace() {
+    let parameters = (0.05..0.9, 0..5u32, ways(), 0.3..0.9, 0..3u32);
+    certify("paths_in_a_furnace", parameters, |(albedo, k, way, part, which): (f64, u32, _, f64, u32)| {
+        let scene = Scene {
+            wall_albedo: albedo,
+            cube_albedo: albedo,
+            light_half_width: 0.0,
+            emission: 1.0,
+            ..Scene::default()
+        };
+        let most = albedo * most_weight(way.0);
+        match which {
+            0 => case(paths(scene, Bounces::Exactly(k), way), albedo.powi(k as i32), most.powi(k as i32)),
+            1 => {
+                let sum = |x: f64| (0..=k as i32).map(|j| x.powi(j)).sum();
+                case(paths(scene, Bounces::UpTo(k), way), sum(albedo), sum(most))
+            }
+            _ => {
+                let q = (albedo + part * (1.0 - albedo)).min(0.99);
+                let all = paths(scene, Bounces::All(q), (Hemisphere::Cosine, way.1));
+                case(all, 1.0 / (1.0 - albedo), q / (q - albedo))
+            }
+        }
+    });
+}
+
+/// 4.3 with the direct light at p_j plugged in, known or estimated.
+#[test]
+fn reflected_light() {
+    certify("reflected_light", (rooms(), ways(), any::<bool>()), |(scene, (directions, _), known)| {
+        let room = BoxRoom::new(scene).unwrap();
+        let once = paths(scene, Bounces::Exactly(1), (directions, FindLight::BySampling));
+        let outgoing =
+            move |p_j: &_, rng: &mut _| if known { room.direct(p_j) } else { once.light_from(p_j, rng) };
+        let scale = scene.cube_albedo * scene.wall_albedo * scene.radiance;
+        let most = scale * most_weight(directions) / (2.25 * PI);
+        case(reflected(room, directions, outgoing), scale * TWO_BOUNCES, most)
+    });
 }
 
 // ---- section 5 -----------------------------------------------------------------------------------------------------

@@ -4,6 +4,8 @@ use std::process::ExitCode;
 
 use unbiased::workbook;
 
+#[path = "../extremes.rs"]
+mod extremes;
 #[path = "../q1_1_exponential.rs"]
 mod q1_1;
 #[path = "../q1_2_one_sample.rs"]
@@ -37,23 +39,29 @@ mod q5_2;
 #[path = "../q5_3_more_bounces.rs"]
 mod q5_3;
 
+#[path = "../trade.rs"]
+mod trade;
+
 fn main() -> ExitCode {
-    workbook::worksheet(&[
-        ("1.1", q1_1::answer),
-        ("1.2", q1_2::answer),
-        ("1.3", q1_3::answer),
-        ("2.1", q2_1::answer),
-        ("3.1", q3_1::answer),
-        ("3.2", q3_2::answer),
-        ("3.3", q3_3::answer),
-        ("3.4", q3_4::answer),
-        ("3.5", q3_5::answer),
-        ("3.6", q3_6::answer),
-        ("4.1", q4_1::answer),
-        ("4.2", q4_2::answer),
-        ("4.3", q4_3::answer),
-        ("5.1", q5_1::answer),
-        ("5.2", q5_2::answer),
-        ("5.3", q5_3::answer),
-    ])
+    workbook::worksheet(
+        &[
+            ("1.1", q1_1::answer),
+            ("1.2", q1_2::answer),
+            ("1.3", q1_3::answer),
+            ("2.1", q2_1::answer),
+            ("3.1", q3_1::answer),
+            ("3.2", q3_2::answer),
+            ("3.3", q3_3::answer),
+            ("3.4", q3_4::answer),
+            ("3.5", q3_5::answer),
+            ("3.6", q3_6::answer),
+            ("4.1", q4_1::answer),
+            ("4.2", q4_2::answer),
+            ("4.3", q4_3::answer),
+            ("5.1", q5_1::answer),
+            ("5.2", q5_2::answer),
+            ("5.3", q5_3::answer),
+        ],
+        &[extremes::answer, trade::answer],
+    )
 }

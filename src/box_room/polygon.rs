@@ -24,36 +24,33 @@ use glam::DVec3;
 /// assert!((seen - exact).abs() < 1e-15);
 /// ```
 pub fn form_factor(corners: &[DVec3], point: DVec3, normal: DVec3) -> f64 {
-    let corners = above_horizon(corners, point, normal);
-    let Some(first) = corners.first().copied() else { return 0.0 };
-    let lengths: Vec<f64> = corners.iter().map(|corner| corner.length()).collect();
-    if lengths.contains(&0.0) {
+    let (origin, corners) = above_horizon(corners, point, normal);
+    let Some(own_first) = corners.first().copied() else { return 0.0 };
+    let first = origin + own_first;
+    // the polygon's normal: where the point lies in its plane, P is 0
+    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+    let area: DVec3 = edges.map(|(a, b)| (*a - own_first).cross(*b - own_first)).sum();
+    if area.dot(first) == 0.0 {
         return 0.0;
     }
     // Σ Θᵢ Γᵢ = Σ uᵢ × uᵢ₊₁ + Σ (Θᵢ/sin Θᵢ − 1) uᵢ × uᵢ₊₁ for the unit vectors u to the corners. In the first sum u₀ may be taken from every uᵢ, so that
     // for a small polygon nothing cancels; the second is smaller by Θ².
     let length = first.length();
-    let from_first: Vec<DVec3> = corners
+    // each u, and u − u₀
+    let units: Vec<(DVec3, DVec3)> = corners
         .iter()
-        .zip(&lengths)
-        .map(|(corner, own)| {
-            let step = *corner - first;
+        .map(|corner| {
+            let (way, step) = (origin + *corner, *corner - own_first);
+            let own = way.length();
             // 1/|vᵢ| − 1/|v₀|, without taking the difference
-            let shorter = -step.dot(*corner + first) / ((own + length) * own * length);
-            step / *own + first * shorter
+            let shorter = -step.dot(way + first) / ((own + length) * own * length);
+            (way / own, step / own + first * shorter)
         })
         .collect();
     let mut sum = 0.0;
-    for i in 0..corners.len() {
-        let j = if i + 1 == corners.len() { 0 } else { i + 1 };
-        let (Some(a), Some(b), Some(u), Some(v)) =
-            (from_first.get(i), from_first.get(j), corners.get(i), corners.get(j))
-        else {
-            continue;
-        };
-        let (unit, next) = (*u / u.length(), *v / v.length());
+    for ((unit, a), (next, b)) in units.iter().zip(units.iter().cycle().skip(1)) {
         let cross = unit.cross(*b - *a);
-        sum += normal.dot(a.cross(*b)) + angle_excess(cross.length(), unit.dot(next)) * normal.dot(cross);
+        sum += normal.dot(a.cross(*b)) + angle_excess(cross.length(), unit.dot(*next)) * normal.dot(cross);
     }
     // rounding apart the sum is in the range
     (sum.abs() / TAU).min(1.0)
@@ -77,24 +74,29 @@ fn angle_excess(sin: f64, cos: f64) -> f64 {
     }
 }
 
-/// The corners as seen from `point`, cut off where they are below the horizon of `normal` (Sutherland & Hodgman 1974).
-fn above_horizon(corners: &[DVec3], point: DVec3, normal: DVec3) -> Vec<DVec3> {
+/// The first corner as seen from `point`, and all of them as seen from that one, cut off where they are below the horizon of `normal` (Sutherland & Hodgman
+/// 1974). Their differences are taken before anything else, as a small polygon's are exact then. P does not depend on the unit of length: it is the largest
+/// coordinate here, so that no square leaves `f64`.
+fn above_horizon(corners: &[DVec3], point: DVec3, normal: DVec3) -> (DVec3, Vec<DVec3>) {
+    let Some(first) = corners.first().copied() else { return (DVec3::ZERO, Vec::new()) };
+    let unit = corners.iter().map(|corner| (*corner - point).abs().max_element()).fold(0.0, f64::max);
+    let origin = (first - point) / unit;
     let seen: Vec<(DVec3, f64)> = corners
         .iter()
         .map(|corner| {
-            let way = *corner - point;
-            (way, normal.dot(way))
+            let step = (*corner - first) / unit;
+            (step, normal.dot(origin + step))
         })
         .collect();
     let mut kept = Vec::with_capacity(seen.len() + 2);
-    for ((way, height), (next, next_height)) in seen.iter().zip(seen.iter().cycle().skip(1)) {
+    for ((step, height), (next, next_height)) in seen.iter().zip(seen.iter().cycle().skip(1)) {
         if *height >= 0.0 {
-            kept.push(*way);
+            kept.push(*step);
         }
         if (*height > 0.0 && *next_height < 0.0) || (*height < 0.0 && *next_height > 0.0) {
             let part = height / (height - next_height);
-            kept.push(*way + (*next - *way) * part);
+            kept.push(*step + (*next - *step) * part);
         }
     }
-    if kept.len() < 3 { Vec::new() } else { kept }
+    (origin, if kept.len() < 3 { Vec::new() } else { kept })
 }

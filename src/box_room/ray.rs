@@ -43,12 +43,8 @@ pub(crate) fn nearest(origin: DVec3, direction: DVec3) -> Vertex {
     let ray = Ray::new(origin, direction);
     let (to_wall, wall) = ray.room();
     let (enters, leaves, side) = ray.cube();
-    // an origin that rounding put a hair inside the cube counts as on its face
-    let (distance, face) = if enters < leaves && leaves > 0.0 && enters <= to_wall {
-        (enters.max(0.0), side)
-    } else {
-        (to_wall, wall)
-    };
+    let (distance, face) =
+        if blocks(enters, leaves) && enters <= to_wall { (enters.max(0.0), side) } else { (to_wall, wall) };
     ray.at(distance, face)
 }
 
@@ -70,7 +66,15 @@ pub fn visible(from: &Vertex, to: DVec3) -> bool {
         return true; // quickly, for most
     }
     let (enters, leaves, _) = Ray::new(origin, to - origin).cube();
-    !(enters < leaves && leaves > 0.0 && enters < 1.0)
+    // where `to` lies on the cube, `enters` is 1 but for its last bit
+    !(blocks(enters, leaves) && enters < 1.0 - f64::EPSILON)
+}
+
+/// Whether a line that enters the cube and leaves it at these distances does so ahead of its origin. One that rounding put a hair inside the cube counts as on
+/// the face that is nearer: what goes out of it does not come out on the other side.
+#[inline]
+fn blocks(enters: f64, leaves: f64) -> bool {
+    enters < leaves && enters + leaves > 0.0
 }
 
 /// A ray, with what both tests need of it.

@@ -165,6 +165,7 @@ pub fn mistakes(topic: Topic) -> Result<Figure> {
             Topic::Roulette => "check_mistakes_roulette",
             Topic::Bounces => "check_mistakes_bounces",
             Topic::Furnace => "check_mistakes_furnace",
+            Topic::Paths => "check_mistakes_paths",
         },
         title: format!(
             "{} classic mistakes ({topic}) and what each probe shows of them: a plain 1 is a mistake it cannot see",

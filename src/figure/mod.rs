@@ -5,6 +5,7 @@
 //! editions: [`Edition::Student`] has the same canvas and axes with nothing of the answer on it.
 
 mod check;
+mod extremes;
 mod inversion;
 mod labels;
 mod lambertian;
@@ -14,14 +15,17 @@ mod rectangle;
 mod render;
 mod room;
 mod roulette;
+mod trade;
 
 pub use check::{mistakes, wealth};
+pub use extremes::{errors_in_ulps, running_mean_errors};
 pub use inversion::{empirical_cdf, exponential, tails};
 pub use lambertian::{directions, integrand, variance_against_exponent, variance_against_ring};
 pub use paths::{occluded_fraction, path_errors, radiance_by_bounces, two_bounces_converging};
 pub use rectangle::{running_means, sampling_errors};
 pub use room::paths_drawn;
 pub use roulette::{bounces, mean_bounces, roulette_trade, truncation};
+pub use trade::trade;
 
 use std::fmt::Write as _;
 use std::fs;

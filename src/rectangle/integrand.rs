@@ -259,7 +259,7 @@ fn with_digits(value: f64, largest: f64) -> Option<f64> {
 
 /// ∫ e^(−kx²) dx from a to b, for k = 1 ½√π (erf b − erf a): by quadrature, to the last digits, where a
 /// difference of two erf would cancel.
-fn bell(k: f64, [a, b]: [f64; 2]) -> f64 {
+pub(super) fn bell(k: f64, [a, b]: [f64; 2]) -> f64 {
     if a < 0.0 && 0.0 < b {
         return bell(k, [0.0, -a]) + bell(k, [0.0, b]);
     }

@@ -16,9 +16,11 @@
 //!
 //! One's own estimator for question 2.1 is checked by `examples/check_mine.rs`.
 
+mod genz;
 mod integrand;
 mod replicate;
 
+pub use genz::{Family, Genz};
 pub use integrand::Integrand;
 pub use replicate::{AllPairs, Jittered, Sobol};
 
@@ -34,6 +36,9 @@ use crate::stream::Stream;
 ///
 /// X and Y are drawn independently, so their joint density is the product of the two:
 /// p(x, y) = p(x) p(y) = 1/(b − a) · 1/(d − c) inside, in 1/\[x y\], and 0 outside. (Worksheet 2.1.)
+///
+/// X = a + (b − a)U is never outside by rounding: a itself has probability 2⁻⁵³, and b is drawn where b − 2⁻⁵³(b − a) is
+/// rounded to it. It is exact to the last place of the larger of a and X.
 ///
 /// ```
 /// use unbiased::{Budget, estimate, ratio, rectangle::Rectangle};

@@ -5,6 +5,7 @@ use rand::distr::{Distribution, StandardUniform};
 
 use super::{P_RR, Roulette, draws_for, one_minus_power, power};
 use crate::error::{Result, require};
+use crate::extended::Extended;
 use crate::fast;
 use crate::run::Estimator;
 use crate::stream::Stream;
@@ -33,7 +34,8 @@ impl Roulette {
 
     /// Var N = p/(1 − p)², +∞ at p = 1.
     pub fn variance(&self) -> f64 {
-        self.mean() / (1.0 - self.p_rr)
+        let p = Extended::from(self.p_rr);
+        (p / (Extended::ONE - p).squared()).round()
     }
 
     /// The smallest k with [`cdf`](Self::cdf)(k) ≥ u, found by bisection: a logarithm's guess can be one off at a step.
@@ -109,6 +111,9 @@ impl Roulette {
 }
 
 /// N by flipping coins; see [`Roulette::bounces_by_simulation`].
+///
+/// # The ends
+/// n bounces or more have probability pⁿ, and take n coins: without end only on a generator that is stuck below p.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BouncesBySimulation {
     roulette: Roulette,
@@ -140,7 +145,8 @@ impl Estimator for BouncesBySimulation {
 /// N = ⌊ln(1 − U)/ln p⌋; see [`Roulette::bounces_by_inversion`].
 ///
 /// # The ends
-/// U = k·2⁻⁵³ is never 1, so the tail of N ends at 53 ln 2/−ln p, beyond which its probability is below 2⁻⁵³: at 164 bounces for p = 4/5.
+/// U = k·2⁻⁵³ is never 1, so the tail of N ends at 53 ln 2/−ln p, beyond which its probability is below 2⁻⁵³: at 164 bounces for p = 4/5, and
+/// at 3.3e17 for p = 1 − 2⁻⁵³, drawn as fast as any.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BouncesByInversion {
     ln_p: f64,

@@ -1,7 +1,8 @@
 //! What roulette costs and buys: a model of light paths in which all of it has a closed form.
 
-use super::{coin, draws_for, one_minus_power, power, square_over};
+use super::{coin, draws_for};
 use crate::error::{Result, require, require_count};
+use crate::extended::Extended;
 use crate::run::Estimator;
 use crate::stream::Stream;
 
@@ -53,7 +54,8 @@ impl LightModel {
 
     /// The truth v/(1 − ρ).
     pub fn mean(&self) -> f64 {
-        self.visibility / (1.0 - self.albedo)
+        let Terms { one, rho, v } = self.terms();
+        (v / (one - rho)).round()
     }
 
     /// Paths that go on with probability q after every vertex and weigh what vertex k sees with (ρ/q)ᵏ.
@@ -85,14 +87,13 @@ impl LightModel {
     /// - v = 1: q* = 1, out of reach, as variance × cost = A/(q − ρ²) falls all the way to it;
     /// - v = 0: every q has no variance, and q* = ρ is the limit for v → 0.
     pub fn optimum(&self) -> f64 {
-        let rho = self.albedo;
-        if rho == 0.0 {
+        if self.albedo == 0.0 {
             return 0.0; // for v = 1, too, where the formula is 0/0
         }
-        let a = self.mean() / (1.0 - rho);
-        let b = 1.0 - self.visibility;
-        let root = rho * (a + b) / (a * rho + (b * (a * (1.0 - rho) * (1.0 + rho) + b)).sqrt());
-        root.clamp(rho, 1.0)
+        let Terms { one, rho, v } = self.terms();
+        let (a, b) = (v / (one - rho).squared(), one - v);
+        let root = rho * (a + b) / (a * rho + (b * (a * (one - rho.squared()) + b)).sqrt());
+        root.round().clamp(self.albedo, 1.0)
     }
 
     /// The number of vertices C from which on roulette with q has a smaller mean square error than truncation after max_k:
@@ -103,17 +104,31 @@ impl LightModel {
     pub fn crossing(&self, q: f64, max_k: u64) -> Result<f64> {
         let (roulette, truncated) = (self.roulette(q)?, self.truncated(max_k)?);
         let lead = roulette.excess() - truncated.excess();
-        if lead <= 0.0 || self.visibility == 0.0 {
+        if self.visibility == 0.0 || !lead.is_positive() {
             return Ok(0.0);
         }
-        // one factor after another: the bias squared may underflow
-        Ok(lead * (1.0 - self.albedo) / truncated.missing() / truncated.bias().abs())
+        let Terms { one, rho, v } = self.terms();
+        let missing = truncated.missing() / (one - rho);
+        Ok((lead / (v * missing.squared())).round())
+    }
+
+    /// The numbers that all formulas are made of.
+    fn terms(&self) -> Terms {
+        Terms { one: Extended::ONE, rho: self.albedo.into(), v: self.visibility.into() }
     }
 
     /// v(1 − v), the variance of what one vertex sees.
-    fn spread(&self) -> f64 {
-        self.visibility * (1.0 - self.visibility)
+    fn spread(&self) -> Extended {
+        let Terms { one, v, .. } = self.terms();
+        v * (one - v)
     }
+}
+
+/// Closed forms are computed in more digits than `f64` has and rounded once.
+struct Terms {
+    one: Extended,
+    rho: Extended,
+    v: Extended,
 }
 
 /// Paths that end by roulette, an unbiased estimator of [`LightModel::mean`]; see [`LightModel::roulette`].
@@ -137,8 +152,7 @@ impl RoulettePaths {
     /// The variance of one path, (A(1 − q) + Bq)/(q − ρ²) with A = v²ρ²/(1 − ρ)² and B = v(1 − v); **+∞ for q ≤ ρ²**,
     /// where the weights grow faster than long paths get rare.
     pub fn variance(&self) -> f64 {
-        let (later, growth) = self.growth();
-        (later * self.mean() * self.mean() * (1.0 - self.q) + self.model.spread()) * growth
+        self.extended_variance().round()
     }
 
     /// The expected number of vertices of one path, 1/(1 − q).
@@ -151,26 +165,33 @@ impl RoulettePaths {
     /// # Errors
     /// If C is not positive and finite.
     pub fn mean_square_error(&self, vertices: f64) -> Result<f64> {
-        Ok(self.variance() * self.cost() / require_vertices(vertices)?)
+        let paths = Extended::from(require_vertices(vertices)?) * (Extended::ONE - self.q.into());
+        Ok((self.extended_variance() / paths).round())
+    }
+
+    fn extended_variance(&self) -> Extended {
+        let Terms { one, rho, v } = self.model.terms();
+        let (later, growth) = self.growth();
+        let mean = v / (one - rho);
+        (later * mean.squared() * (one - self.q.into()) + self.model.spread()) * growth
     }
 
     /// Variance × cost / v − (1 − v), written without that difference, which may have no digits.
-    fn excess(&self) -> f64 {
+    fn excess(&self) -> Extended {
+        let Terms { one, rho, v } = self.model.terms();
         let (later, growth) = self.growth();
-        let LightModel { albedo, visibility } = self.model;
-        let odds = self.q / (1.0 - self.q);
-        (later * self.mean() / (1.0 - albedo) + (1.0 - visibility) * (odds + later)) * growth
+        let q = Extended::from(self.q);
+        (later * v / (one - rho).squared() + (one - v) * (q / (one - q) + later)) * growth
     }
 
     /// ρ²/q and 1/(1 − ρ²/q), the sum of its powers: +∞ for q ≤ ρ².
-    fn growth(&self) -> (f64, f64) {
-        let LightModel { albedo, visibility } = self.model;
-        if albedo == 0.0 || visibility == 0.0 {
-            return (0.0, 1.0); // only the first vertex, if any, sees light
+    fn growth(&self) -> (Extended, Extended) {
+        if self.model.albedo == 0.0 || self.model.visibility == 0.0 {
+            return (Extended::from(0.0), Extended::ONE); // only the first vertex, if any, sees light
         }
-        let (rho, q) = square_over(albedo, self.q);
-        let margin = rho.mul_add(-rho, q); // q − ρ², rounded once
-        (rho / q * rho, if margin > 0.0 { q / margin } else { f64::INFINITY })
+        let (square, q) = (self.model.terms().rho.squared(), Extended::from(self.q));
+        let margin = q - square;
+        (square / q, if margin.is_positive() { q / margin } else { f64::INFINITY.into() })
     }
 }
 
@@ -213,17 +234,19 @@ impl TruncatedPaths {
 
     /// The mean v(1 − ρᴷ⁺¹)/(1 − ρ).
     pub fn mean(&self) -> f64 {
-        self.model.visibility * self.geometric_sum()
+        let Terms { rho, v, .. } = self.model.terms();
+        let (_, sum) = rho.powers(self.vertices());
+        (v * sum).round()
     }
 
     /// How far the mean is from the truth, −v ρᴷ⁺¹/(1 − ρ): a fraction ρᴷ⁺¹ of the light is missing.
     pub fn bias(&self) -> f64 {
-        0.0 - self.model.mean() * self.missing() // where nothing is missing it is 0, not −0
+        0.0 - self.shortfall().round() // where nothing is missing it is 0, not −0
     }
 
     /// The variance of one path, v(1 − v)(1 − ρ²⁽ᴷ⁺¹⁾)/(1 − ρ²).
     pub fn variance(&self) -> f64 {
-        self.model.spread() * self.sum_of_squares()
+        self.extended_variance().round()
     }
 
     /// The number of vertices of every path, K + 1.
@@ -236,31 +259,40 @@ impl TruncatedPaths {
     /// # Errors
     /// If C is not positive and finite.
     pub fn mean_square_error(&self, vertices: f64) -> Result<f64> {
-        Ok(self.bias() * self.bias() + self.variance() * self.cost() / require_vertices(vertices)?)
+        let paths = Extended::from(require_vertices(vertices)?) / self.cost().into();
+        Ok((self.shortfall().squared() + self.extended_variance() / paths).round())
     }
 
     fn vertices(&self) -> u64 {
         self.max_k + 1
     }
 
+    fn extended_variance(&self) -> Extended {
+        self.model.spread() * self.sum_of_squares()
+    }
+
     /// Variance × cost / v − (1 − v).
-    fn excess(&self) -> f64 {
-        (1.0 - self.model.visibility) * (self.cost() * self.sum_of_squares() - 1.0)
+    fn excess(&self) -> Extended {
+        let Terms { one, v, .. } = self.model.terms();
+        (one - v) * (self.sum_of_squares() * self.cost().into() - one)
+    }
+
+    /// v ρᴷ⁺¹/(1 − ρ)
+    fn shortfall(&self) -> Extended {
+        let Terms { one, rho, v } = self.model.terms();
+        v * self.missing() / (one - rho)
     }
 
     /// ρᴷ⁺¹
-    fn missing(&self) -> f64 {
-        power(self.model.albedo, self.vertices().into())
+    fn missing(&self) -> Extended {
+        let (power, _) = self.model.terms().rho.powers(self.vertices());
+        power
     }
 
-    /// 1 + ρ + … + ρᴷ = (1 − ρᴷ⁺¹)/(1 − ρ)
-    fn geometric_sum(&self) -> f64 {
-        one_minus_power(self.model.albedo, self.vertices().into()) / (1.0 - self.model.albedo)
-    }
-
-    /// 1 + ρ² + … + ρ²ᴷ = (1 − ρᴷ⁺¹)(1 + ρᴷ⁺¹)/((1 − ρ)(1 + ρ))
-    fn sum_of_squares(&self) -> f64 {
-        self.geometric_sum() * ((1.0 + self.missing()) / (1.0 + self.model.albedo))
+    /// 1 + ρ² + … + ρ²ᴷ
+    fn sum_of_squares(&self) -> Extended {
+        let (_, sum) = self.model.terms().rho.squared().powers(self.vertices());
+        sum
     }
 }
 

@@ -10,6 +10,7 @@ use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
 
 use crate::error::{Result, require};
+use crate::extended::Extended;
 use crate::run::Estimator;
 use crate::stream::Stream;
 
@@ -102,8 +103,8 @@ impl Roulette {
     pub fn wrapped_variance(&self, mean: f64, variance: f64) -> Result<f64> {
         require("the mean of X", mean, mean.is_finite(), "finite")?;
         require("the variance of X", variance, variance >= 0.0, "0 or positive")?;
-        let (mean, p) = square_over(mean, self.p_rr);
-        Ok(variance / self.p_rr + mean * (1.0 - self.p_rr) / p * mean)
+        let [mean, variance, p] = [mean, variance, self.p_rr].map(Extended::from);
+        Ok(((variance + mean.squared() * (Extended::ONE - p)) / p).round())
     }
 }
 
@@ -165,12 +166,6 @@ fn power(p: f64, n: u128) -> f64 {
 /// 1 − pⁿ without cancellation, for n ≥ 1.
 fn one_minus_power(p: f64, n: u128) -> f64 {
     if n == 1 { 1.0 - p } else { (n as f64 * p.ln()).exp_m1().abs() }
-}
-
-/// x and p scaled so that x/p·x is the same, and over- or underflows only where x²/p itself does.
-fn square_over(x: f64, p: f64) -> (f64, f64) {
-    const SCALE: f64 = (1u128 << 127) as f64 * (1u128 << 127) as f64 * 4.0; // 2²⁵⁶
-    if p < 1.0 / (SCALE * SCALE) { (x * SCALE, p * SCALE * SCALE) } else { (x, p) }
 }
 
 /// How many draws share a stream where each is this much work: a block stays a matter of milliseconds.

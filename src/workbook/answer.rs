@@ -7,6 +7,7 @@ use crate::box_room::Scene;
 use crate::estimate::Estimate;
 use crate::figure::{Edition, Figure};
 use crate::run::{Cost, Outcome};
+use crate::trade::Measured;
 
 /// What a row of an answer is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -31,6 +32,7 @@ pub struct Answer {
     cost: Cost,
     seed: Option<u64>,
     seconds: Option<f64>,
+    pilot_never_varied: bool,
     note: Option<String>,
     figures: Vec<Figure>,
 }
@@ -49,6 +51,7 @@ impl Answer {
             cost: Cost::default(),
             seed: None,
             seconds: None,
+            pilot_never_varied: false,
             note: None,
             figures: Vec::new(),
         }
@@ -93,7 +96,24 @@ impl Answer {
         self.cost = outcome.cost;
         self.seed = Some(outcome.seed);
         self.seconds = Some(outcome.elapsed.as_secs_f64());
+        self.pilot_never_varied = outcome.pilot_never_varied();
         self
+    }
+
+    /// What a comparison found of one estimator, with what decides its rank as parameters.
+    pub fn measured(mut self, rival: &Measured, seed: u64) -> Self {
+        let draws = rival.estimate.draws() as f64;
+        let count = |each: f64| (each * draws).round() as u64;
+        self.estimate = Some(rival.estimate);
+        self.cost =
+            Cost { random_numbers: count(rival.random_numbers), evaluations: count(rival.evaluations) };
+        self.seed = Some(seed);
+        self.seconds = Some(rival.seconds * draws);
+        self.truth(rival.truth)
+            .parameter("variance", rival.variance())
+            .parameter("variance_error", rival.variance_error)
+            .parameter("seconds_per_draw", rival.seconds)
+            .parameter("efficiency", rival.efficiency())
     }
 
     /// A sentence: the answer itself where the question has no number, or a word on this one.
@@ -165,6 +185,10 @@ impl Answer {
 
     pub(super) fn seconds(&self) -> Option<f64> {
         self.seconds
+    }
+
+    pub(super) fn pilot_never_varied(&self) -> bool {
+        self.pilot_never_varied
     }
 
     pub(super) fn sentence(&self) -> Option<&str> {

@@ -11,11 +11,11 @@ use crate::check::{self, Attempt, Measurement, Probe, Topic};
 use crate::error::{Error, Result};
 use crate::estimate::Estimate;
 
-/// The `main` of an example that checks the reader's own estimator, written for a worksheet question.
+/// The `main` of an example that checks the reader's own estimators, one a topic, for the worksheet question in hand or that of `--question`.
 ///
-/// Without options it tries the estimator on all probes of its topic, and says what the ratios to the truth are and which classic mistakes they are consistent with.
+/// Without other options it tries the estimator on all probes of its topic, and says what the ratios to the truth are and which classic mistakes they are consistent with.
 /// `--question Q --answer TEXT` judges a number worked out by hand, and `--question Q --draws-from FILE` draws made by any other program, one a line (`-` for standard input).
-pub fn check_mine(question: &str, mine: &Attempt<'_>) -> ExitCode {
+pub fn check_mine(question: &str, mine: &[Attempt<'_>]) -> ExitCode {
     ended(Wish::read(question).and_then(|wish| wish.grant(mine)))
 }
 
@@ -57,7 +57,7 @@ impl Wish {
         Ok(wish)
     }
 
-    fn grant(&self, mine: &Attempt<'_>) -> Result<()> {
+    fn grant(&self, mine: &[Attempt<'_>]) -> Result<()> {
         let said = if self.help {
             HELP.to_owned()
         } else if let Some(answer) = &self.answer {
@@ -77,14 +77,16 @@ impl Wish {
             .ok_or_else(|| Error::Usage(format!("question {} has no estimator to check", self.question)))
     }
 
-    fn judge_mine(&self, mine: &Attempt<'_>) -> Result<String> {
-        let (asked, given) = (self.topic()?, mine.topic());
-        if asked != given {
+    fn judge_mine(&self, mine: &[Attempt<'_>]) -> Result<String> {
+        let asked = self.topic()?;
+        let Some(mine) = mine.iter().find(|attempt| attempt.topic() == asked) else {
             let question = &self.question;
+            let given: Vec<_> = mine.iter().map(|attempt| format!("“{}”", attempt.topic())).collect();
             return Err(Error::Usage(format!(
-                "question {question} is about “{asked}”, the estimator written here about “{given}”"
+                "question {question} is about “{asked}”, what is written here about {}",
+                given.join(" and ")
             )));
-        }
+        };
         let diagnosis = check::diagnose(&check::measure(mine, self.draws, self.seed)?)?;
         Ok(format!(
             "Question {}, {} draws a probe, seed {}.\n{diagnosis}",

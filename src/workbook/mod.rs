@@ -18,6 +18,7 @@
 //! ```
 
 mod answer;
+mod appendix;
 mod check_mine;
 mod options;
 mod page;
@@ -32,6 +33,7 @@ mod value;
 use std::process::ExitCode;
 
 pub use answer::{Answer, Kind};
+pub use appendix::{Appendix, Table};
 pub use check_mine::check_mine;
 pub use options::Options;
 pub use value::Value;
@@ -125,8 +127,19 @@ pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
     }))
 }
 
-/// The worksheet's `main`: answers all these questions, and writes `index.html` with all of it.
-pub fn worksheet(answers: &[(&str, AnswerFn)]) -> ExitCode {
+/// What an example beside the questions does.
+pub type AppendixFn = fn(&Options) -> Result<Appendix>;
+
+/// The `main` of an example beside the questions: reads the command line, prints the tables and saves the figures.
+pub fn appendix(appendix: AppendixFn) -> ExitCode {
+    ended(Request::read(&[]).and_then(|request| {
+        let Some(options) = request.options(&[])? else { return Ok(()) };
+        options.with_out(|| print::appendix(&appendix(&options)?, true, &options))
+    }))
+}
+
+/// The worksheet's `main`: answers all these questions, and writes `index.html` with all of it and the appendices.
+pub fn worksheet(answers: &[(&str, AnswerFn)], appendices: &[AppendixFn]) -> ExitCode {
     let asked = answers.iter().map(|(id, answer)| Ok((question(id)?, *answer))).collect::<Result<Vec<_>>>();
     ended(asked.and_then(|asked| {
         let questions: Vec<_> = asked.iter().map(|(question, _)| *question).collect();
@@ -139,8 +152,17 @@ pub fn worksheet(answers: &[(&str, AnswerFn)]) -> ExitCode {
                 print::answers(question, &rows, &options)?;
                 answered.push((*question, rows));
             }
+            let mut beside = Vec::new();
+            if options.edition == Edition::Solution {
+                for appendix in appendices {
+                    let appendix = appendix(&options)?;
+                    // their numbers for programs are what their own examples give
+                    print::appendix(&appendix, !options.json, &options)?;
+                    beside.push(appendix);
+                }
+            }
             let path = options.out.join("index.html");
-            write_whole(&path, page::page(&answered, &options)?.as_bytes())?;
+            write_whole(&path, page::page(&answered, &beside, &options)?.as_bytes())?;
             print::page(&path, &options)
         })
     }))

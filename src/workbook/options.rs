@@ -17,8 +17,8 @@ use crate::run::{Budget, Estimator, Outcome, Run};
 /// The options of an example.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// Draws to take instead of each question's own number.
-    pub draws: Option<u64>,
+    /// When an estimator's run is over, instead of after each question's own number of draws.
+    pub budget: Option<Budget>,
     /// The seed of every random number; 1 if none is given.
     pub seed: u64,
     /// Threads to run on; one a core if none is given. The results are the same.
@@ -36,7 +36,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            draws: None,
+            budget: None,
             seed: 1,
             threads: None,
             out: PathBuf::from("worksheet"),
@@ -82,7 +82,14 @@ impl Request {
                 "help" => return Ok(Self::Help),
                 "hint" => return Ok(Self::Hint),
                 "json" => options.json = true,
-                "draws" => options.draws = Some(count(&mut line, "--draws")?),
+                "draws" => options.budget = Some(Budget::Draws(count(&mut line, "--draws")?)),
+                "error" => options.budget = Some(Budget::StdError(positive(&mut line, "--error")?)),
+                "seconds" => {
+                    let seconds = positive(&mut line, "--seconds")?;
+                    let time = Duration::try_from_secs_f64(seconds);
+                    let too_long = |_| Error::Usage(format!("--seconds takes fewer than {seconds} seconds"));
+                    options.budget = Some(Budget::Time(time.map_err(too_long)?));
+                }
                 "seed" => options.seed = whole(&mut line, "--seed")?,
                 "threads" => options.threads = Some(count(&mut line, "--threads")? as usize),
                 "out" => options.out = line.value().map_err(usage)?.into(),
@@ -124,6 +131,12 @@ pub(super) fn count(line: &mut Parser, name: &str) -> Result<u64> {
         0 => Err(Error::Usage(format!("{name} takes a positive whole number, not 0"))),
         count => Ok(count),
     }
+}
+
+fn positive(line: &mut Parser, name: &str) -> Result<f64> {
+    let given = text(line, name)?;
+    let number = given.parse::<f64>().ok().filter(|number| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| Error::Usage(format!("{name} takes a positive number, not \"{given}\"")))
 }
 
 fn edition(name: &str) -> Result<Edition> {
@@ -197,7 +210,7 @@ impl Options {
         }
     }
 
-    /// Runs an estimator as the options say, `draws` times where they do not, with a progress bar on a terminal.
+    /// Runs an estimator until the budget that the options name is spent, `draws` times where they name none, with a progress bar on a terminal.
     ///
     /// # Errors
     /// Those of [`Run::estimate`].
@@ -214,7 +227,7 @@ impl Options {
         if let Some(threads) = self.threads {
             run = run.threads(threads);
         }
-        let outcome = run.estimate(estimator, Budget::Draws(self.draws.unwrap_or(draws)));
+        let outcome = run.estimate(estimator, self.budget.unwrap_or(Budget::Draws(draws)));
         if let Some(bar) = bar.get() {
             bar.finish_and_clear();
         }
@@ -261,8 +274,13 @@ impl Options {
             let value = self.value(parameter.name).unwrap_or(parameter.default);
             command += &format!(" --{} {value}", parameter.name);
         }
-        if let Some(draws) = self.draws {
-            command += &format!(" --draws {draws}");
+        match self.budget {
+            Some(Budget::Draws(draws)) => command += &format!(" --draws {draws}"),
+            Some(Budget::StdError(error) | Budget::RelativeError(error)) => {
+                command += &format!(" --error {error}")
+            }
+            Some(Budget::Time(time)) => command += &format!(" --seconds {}", time.as_secs_f64()),
+            None => {}
         }
         command + &format!(" --seed {}", self.seed)
     }

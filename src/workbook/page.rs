@@ -3,12 +3,16 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use pulldown_latex::{Parser, RenderConfig, Storage, config::DisplayMode, push_mathml};
 
-use super::{Answer, Options, Question, print, shown};
+use super::{Answer, Appendix, Options, Question, print, shown};
 use crate::error::{Error, Result};
 use crate::figure::Edition;
 
 /// The whole page: no script, nothing loaded from elsewhere.
-pub(super) fn page(answered: &[(&'static Question, Vec<Answer>)], options: &Options) -> Result<String> {
+pub(super) fn page(
+    answered: &[(&'static Question, Vec<Answer>)],
+    appendices: &[Appendix],
+    options: &Options,
+) -> Result<String> {
     let student = options.edition == Edition::Student;
     let title = "Monte Carlo and global illumination: the worksheet";
     let mut articles = Vec::new();
@@ -39,12 +43,16 @@ pub(super) fn page(answered: &[(&'static Question, Vec<Answer>)], options: &Opti
                     @for (question, _) in answered {
                         a href={ "#q" (question.id) } { (question.id) } " "
                     }
+                    @for appendix in appendices {
+                        a href={ "#" (appendix.example) } { (appendix.title) } " "
+                    }
                 }
                 main {
                     @for (index, article) in articles.iter().enumerate() {
                         @if let Some(heading) = section_heading(answered, index) { h2 { (heading) } }
                         (article)
                     }
+                    @for appendix in appendices { (beside(appendix)) }
                 }
                 footer { p { "Made by " code { "cargo run --release --example worksheet" } ", crate unbiased " (env!("CARGO_PKG_VERSION")) "." } }
             }
@@ -112,6 +120,27 @@ fn article(question: &'static Question, answers: &[Answer], options: &Options) -
             }
         }
     })
+}
+
+/// What stands beside the questions.
+fn beside(appendix: &Appendix) -> Markup {
+    html! {
+        article id=(appendix.example) {
+            h2 { (appendix.title) }
+            p { (prose(&appendix.text)) }
+            @for table in &appendix.tables {
+                div.wide { table {
+                    caption { (prose(&table.caption)) }
+                    thead { tr { @for name in &table.columns { th { (name) } } } }
+                    tbody { @for row in &table.rows { tr { @for cell in row { td { (prose(cell)) } } } } }
+                } }
+            }
+            @for figure in &appendix.figures {
+                figure { (PreEscaped(figure.svg())) figcaption { (figure.title()) } }
+            }
+            p.command { code { "cargo run --release --example " (appendix.example) } }
+        }
+    }
 }
 
 fn numbers(answers: &[&Answer], options: &Options) -> Markup {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::{Answer, Kind, Options, Question, shown};
+use super::{Answer, Appendix, Kind, Options, Question, shown};
 use crate::error::{Error, Result};
 use crate::figure::Edition;
 
@@ -28,6 +28,46 @@ pub(super) fn answers(question: &Question, answers: &[Answer], options: &Options
         text(question, &rows, options)
     };
     printed.or_else(until_the_pipe_closes)
+}
+
+/// Saves an appendix's figures, and prints it unless it is not `wanted`.
+pub(super) fn appendix(appendix: &Appendix, wanted: bool, options: &Options) -> Result<()> {
+    let mut paths = Vec::new();
+    for figure in &appendix.figures {
+        paths.extend(figure.save(&options.out)?);
+    }
+    if !wanted {
+        return Ok(());
+    }
+    let print = || -> io::Result<()> {
+        let out = &mut io::stdout().lock();
+        if options.json {
+            for (index, record) in appendix.records.iter().enumerate() {
+                // the figures belong to all of it, and are named once
+                let figures = if index == 0 { &paths[..] } else { &[] };
+                writeln!(out, "{}", serde_json::to_string(&Row::of(record, figures))?)?;
+            }
+            return Ok(());
+        }
+        writeln!(out, "\n{}\n", appendix.title)?;
+        wrapped(out, &appendix.text)?;
+        for table in &appendix.tables {
+            writeln!(out, "\n    {}\n", table.caption)?;
+            for line in table.lines() {
+                writeln!(out, "    {line}")?;
+            }
+        }
+        writeln!(out)?;
+        for svg in svgs(&paths) {
+            writeln!(out, "    figure       {}", svg.display())?;
+        }
+        Ok(())
+    };
+    print().or_else(until_the_pipe_closes)
+}
+
+fn svgs(paths: &[PathBuf]) -> impl Iterator<Item = &PathBuf> {
+    paths.iter().filter(|path| path.extension().is_some_and(|ending| ending == "svg"))
 }
 
 /// The last line of the worksheet: where its page is.
@@ -61,23 +101,43 @@ struct Row<'a> {
     figures: &'a [PathBuf],
 }
 
+impl<'a> Row<'a> {
+    fn of(answer: &'a Answer, figures: &'a [PathBuf]) -> Self {
+        let parameters = answer.parameters().iter().map(|(name, value)| ((*name).into(), value.json()));
+        let estimate = answer.estimate();
+        Self {
+            question: answer.question(),
+            what: answer.what(),
+            kind: answer.kind(),
+            parameters: parameters.collect(),
+            truth: answer.exact(),
+            estimate: answer.found(),
+            std_error: estimate.and_then(|estimate| estimate.std_error()),
+            draws: estimate.map(|estimate| estimate.draws()),
+            seed: answer.seed(),
+            seconds: answer.seconds(),
+            figures,
+        }
+    }
+
+    /// Nothing of the answer, and a name that does not tell it.
+    fn untold(self, question: &'a Question) -> Self {
+        Self {
+            what: question.title,
+            truth: None,
+            estimate: None,
+            std_error: None,
+            draws: None,
+            seed: None,
+            seconds: None,
+            ..self
+        }
+    }
+}
+
 fn json(question: &Question, answer: &Answer, figures: &[PathBuf], options: &Options) -> io::Result<()> {
-    let told = options.edition == Edition::Solution;
-    let estimate = answer.estimate().filter(|_| told);
-    let parameters = answer.parameters().iter().map(|(name, value)| ((*name).into(), value.json()));
-    let row = Row {
-        question: answer.question(),
-        what: if told { answer.what() } else { question.title },
-        kind: answer.kind(),
-        parameters: parameters.collect(),
-        truth: answer.exact().filter(|_| told),
-        estimate: answer.found().filter(|_| told),
-        std_error: estimate.and_then(|estimate| estimate.std_error()),
-        draws: estimate.map(|estimate| estimate.draws()),
-        seed: answer.seed().filter(|_| told),
-        seconds: answer.seconds().filter(|_| told),
-        figures,
-    };
+    let row = Row::of(answer, figures);
+    let row = if options.edition == Edition::Solution { row } else { row.untold(question) };
     writeln!(io::stdout(), "{}", serde_json::to_string(&row)?)
 }
 
@@ -98,7 +158,7 @@ fn text(question: &Question, rows: &[(&Answer, Vec<PathBuf>)], options: &Options
             writeln!(out)?;
             solution(out, answer, &varied)?;
         }
-        for svg in paths.iter().filter(|path| path.extension().is_some_and(|ending| ending == "svg")) {
+        for svg in svgs(paths) {
             writeln!(out, "    figure       {}", svg.display())?;
         }
     }
@@ -134,6 +194,9 @@ fn solution(out: &mut impl Write, answer: &Answer, varied: &[&str]) -> io::Resul
         write!(out, "\n        cost     {} draws, {} random numbers", estimate.draws(), cost.random_numbers)?;
         if cost.evaluations > 0 {
             write!(out, ", {} evaluations", cost.evaluations)?;
+        }
+        if answer.pilot_never_varied() {
+            write!(out, ", the pilot run never varied")?;
         }
         let seed = answer.seed().unwrap_or_default();
         writeln!(out, ", {:.3} s, seed {seed}", answer.seconds().unwrap_or_default())?;
@@ -204,6 +267,8 @@ pub(super) fn help(questions: &[&Question]) -> Result<()> {
     }
     text += "Options
     --draws N            draws of every estimator (default: each question's own number)
+    --error E            draws until the std error is E, by a pilot run (in the units of the answer)
+    --seconds S          draws for S seconds an estimator
     --seed S             seed of all random numbers (1)
     --threads T          threads (one a core; the results are the same for any number)
     --out DIR            folder for figures and pages (worksheet)

@@ -1,0 +1,22 @@
+"""Makes extremes.csv: u, and -ln(1 - u) and 1 - exp(-u) as sums of two doubles, by mpmath (pip install mpmath).
+
+python3 src/figure/extremes.py > src/figure/extremes.csv
+"""
+import random
+from mpmath import exp, log, mp, mpf
+
+mp.prec = 300
+random.seed(1)
+
+
+def twofold(x):
+    high = float(x)
+    return f"{high!r},{float(x - mpf(high))!r}"
+
+
+print("u,log_high,log_low,cdf_high,cdf_low")
+for i in range(240):
+    # even on a logarithmic axis from 1e-18 to 1, with random last digits
+    u = 10 ** (-18 + 18 * (i + random.random()) / 240)
+    exact = mpf(u)
+    print(f"{u!r},{twofold(-log(1 - exact))},{twofold(1 - exp(-exact))}")

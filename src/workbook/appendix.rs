@@ -1,0 +1,62 @@
+//! What the workbook says beside the questions: a text, tables and figures, on the page and by an example of its own.
+
+use super::Answer;
+use crate::figure::Figure;
+
+/// A part of the worksheet that answers no question of the sheet's. The student's edition leaves it out.
+#[derive(Debug, Clone)]
+pub struct Appendix {
+    /// The file in `examples/`, without `.rs`.
+    pub example: &'static str,
+    /// A few words.
+    pub title: &'static str,
+    /// What it is about, in a paragraph.
+    pub text: String,
+    /// Its tables, in order.
+    pub tables: Vec<Table>,
+    /// The numbers for programs: what `--json` gives.
+    pub records: Vec<Answer>,
+    /// Its figures.
+    pub figures: Vec<Figure>,
+}
+
+/// A table of an [`Appendix`]; all cells are text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Table {
+    /// What it shows, in a line.
+    pub caption: String,
+    /// The columns' names; the first one names what a row is about.
+    pub columns: Vec<&'static str>,
+    /// As many cells a row as there are columns.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// The table in lines of plain text, columns aligned.
+    pub(super) fn lines(&self) -> Vec<String> {
+        let heading = self.columns.iter().map(|name| (*name).to_owned()).collect();
+        let all: Vec<&Vec<String>> = std::iter::once(&heading).chain(&self.rows).collect();
+        let width = |column: usize| {
+            all.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..self.columns.len()).map(width).collect();
+        all.iter()
+            .map(|row| {
+                let padded = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
+                padded.collect::<Vec<_>>().join("  ").trim_end().to_owned()
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_aligned() {
+        let rows = vec![vec!["ln".into(), "1".into()], vec!["−exp_m1".into(), "22".into()]];
+        let table = Table { caption: String::new(), columns: vec!["form", "ulps"], rows };
+        assert_eq!(table.lines(), ["form     ulps", "ln       1", "−exp_m1  22"]);
+    }
+}

@@ -1,0 +1,979 @@
+//! Section 4's paths, held to a ladder of truths: the furnace, direct light, two bounces, the balance of energy, every way against every other.
+//!
+//! # What a test catches
+//! Where a draw is a function of a few numbers, these are put in: Gauss's nodes where it is smooth, which leaves rounding, and two random points in each
+//! of very many cells where it has jumps, whose differences give the error bar. Such a bar, and that of plain draws, may be missed by 8 std errors (1.2e-15, two-sided); a
+//! bias of 11 is caught in all runs but one in a thousand. Every comparison prints the bias that it would catch, and fails if that is more than is said here: 1e-3 of
+//! the truth for direct light, shadows, two bounces with the light sampled, the furnace without a limit and the balance of energy; 3e-3 for the cumulative values; 1e-2 for
+//! two bounces with the light found by chance (1e-3 in the ignored test); 3e-2 for every way against every other. About 300 comparisons: 4e-13 a run.
+
+mod common;
+
+use std::f64::consts::{FRAC_1_PI, PI};
+
+use glam::DVec3;
+use rand::distr::Distribution;
+use rayon::prelude::*;
+use unbiased::box_room::{BoxRoom, Face, Scene, Vertex, nearest_hit, visible};
+use unbiased::hemisphere::Hemisphere;
+use unbiased::lambertian::Lambertian;
+use unbiased::paths::{Bounces, FindLight, Paths, reflected};
+use unbiased::{Budget, Estimate, Estimator, Run, Stream, estimate, from_fn};
+
+use Bounces::{All, AllByWeight, Exactly, UpTo};
+use FindLight::{ByChance, BySampling};
+use Hemisphere::{Cosine, Uniform};
+
+const WAYS: [(Hemisphere, FindLight); 4] =
+    [(Cosine, BySampling), (Uniform, BySampling), (Cosine, ByChance), (Uniform, ByChance)];
+
+fn room(scene: Scene) -> BoxRoom {
+    BoxRoom::new(scene).unwrap()
+}
+
+fn paths(scene: Scene, bounces: Bounces, (directions, light): (Hemisphere, FindLight)) -> Paths {
+    Paths::new(room(scene), bounces, directions, light).unwrap()
+}
+
+// ---- estimates with error bars -------------------------------------------------------------------------------------
+
+/// A mean and its standard error.
+#[derive(Debug, Clone, Copy)]
+struct Found {
+    mean: f64,
+    std_error: f64,
+}
+
+impl Found {
+    /// Holds it against a truth known to within `off`, and says which bias it would have caught.
+    fn assert(self, truth: f64, off: f64, caught: f64, what: &str) {
+        let allowed = 8.0 * self.std_error + off + 1e-13 * truth;
+        let bias = (11.0 * self.std_error + off) / truth;
+        println!("{what}: {:.8} for {truth:.8}, catches {bias:.1e}", self.mean);
+        assert!((self.mean - truth).abs() <= allowed, "{what}: {self:?} for {truth}");
+        assert!(bias <= caught, "{what}: a bias of {bias:e} would pass");
+    }
+
+    fn agrees(self, other: Self, caught: f64, what: &str) {
+        let std_error = self.std_error.hypot(other.std_error);
+        Self { std_error, ..self }.assert(other.mean, 0.0, caught, what);
+    }
+}
+
+impl From<Estimate> for Found {
+    fn from(estimate: Estimate) -> Self {
+        Self { mean: estimate.mean(), std_error: estimate.std_error().unwrap() }
+    }
+}
+
+fn plain(estimator: &impl Estimator, draws: u64, seed: u64) -> Found {
+    estimate(estimator, Budget::Draws(draws), common::seed(seed)).unwrap().into()
+}
+
+/// Two random points in each of `side`ᵈ cells of the unit cube of d dimensions, of whose numbers a draw is a function.
+fn in_cells(estimator: &impl Estimator, dimensions: u32, side: u64, seed: u64) -> Found {
+    let (cells, block) = (side.pow(dimensions), side.pow(dimensions - 1));
+    let sums: Vec<[f64; 2]> = (0..side)
+        .into_par_iter()
+        .map(|first| {
+            let mut rng = Stream::new(common::seed(seed), first);
+            let (mut sum, mut squares) = (0.0, 0.0);
+            for cell in first * block..(first + 1) * block {
+                let mut draw = || {
+                    let mut rest = cell;
+                    let mut point = [0.0; 4];
+                    for x in &mut point[..dimensions as usize] {
+                        *x = ((rest % side) as f64 + rng.uniform()) / side as f64;
+                        rest /= side;
+                    }
+                    let mut script = Stream::scripted(&point[..dimensions as usize]);
+                    let x = estimator.draw(&mut script);
+                    assert!(script.random_numbers() <= dimensions.into(), "more numbers than thought");
+                    x
+                };
+                let (a, b) = (draw(), draw());
+                sum += 0.5 * (a + b);
+                squares += 0.25 * (a - b) * (a - b);
+            }
+            [sum, squares]
+        })
+        .collect();
+    let [sum, squares] = sums.iter().fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
+    let n = cells as f64;
+    Found { mean: sum / n, std_error: squares.sqrt() / n }
+}
+
+/// The same in as many cells as it takes to catch this bias, from `side`ᵈ on.
+fn held(
+    estimator: &impl Estimator,
+    dimensions: u32,
+    mut side: u64,
+    seed: u64,
+    truth: f64,
+    caught: f64,
+    what: &str,
+) {
+    let mut found = in_cells(estimator, dimensions, side, seed);
+    for _ in 0..4 {
+        let short = 11.5 * found.std_error / (caught * truth);
+        if short <= 1.0 {
+            break;
+        }
+        // with jumps half an order better than without cells, where it is smooth a whole one
+        let order = f64::from(dimensions) / 2.0 + 0.8;
+        side = (side as f64 * short.powf(1.0 / order) * 1.03) as u64 + 1;
+        found = in_cells(estimator, dimensions, side, seed);
+    }
+    found.assert(truth, 0.02 * caught * truth, caught, &format!("{what} in {side}^{dimensions} cells"));
+}
+
+/// Nodes and weights of Gauss and Legendre on [0, 1], by Newton's iteration.
+fn gauss(n: usize) -> Vec<(f64, f64)> {
+    let node = |i: usize| {
+        let mut x = ((i as f64 + 0.75) / (n as f64 + 0.5) * PI).cos();
+        let mut slope = 0.0;
+        for _ in 0..8 {
+            let (mut p, mut before) = (x, 1.0);
+            for k in 2..=n {
+                let k = k as f64;
+                (p, before) = (((2.0 * k - 1.0) * x * p - (k - 1.0) * before) / k, p);
+            }
+            slope = n as f64 * (x * p - before) / (x * x - 1.0);
+            x -= p / slope;
+        }
+        (0.5 * (x + 1.0), 1.0 / ((1.0 - x * x) * slope * slope))
+    };
+    (0..n).map(node).collect()
+}
+
+// ---- truths by other means -----------------------------------------------------------------------------------------
+
+/// Howell's B-3, an element under the corner of a parallel rectangle a × b at the distance c; odd in a and b.
+fn parallel(a: f64, b: f64, c: f64) -> f64 {
+    let (x, y) = (a / c, b / c);
+    let (sx, sy) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
+    (x / sx * (y / sx).atan() + y / sy * (x / sy).atan()) / (2.0 * PI)
+}
+
+/// Howell's B-4, an element on a plane at right angles to the rectangle's, which lies c above the element and reaches from the element's plane to a; odd in b.
+fn perpendicular(a: f64, b: f64, c: f64) -> f64 {
+    let s = a.hypot(c);
+    ((b / c).atan() - c / s * (b / s).atan()) / (2.0 * PI)
+}
+
+/// The part of a vertex's hemisphere that a light of this half-width fills, if nothing hides it.
+fn seen(vertex: &Vertex, h: f64) -> f64 {
+    let ([x, y, z], n) = (vertex.position().to_array(), vertex.normal());
+    let c = 4.0 - z;
+    if n.z > 0.5 {
+        return parallel(h - x, h - y, c)
+            + parallel(h + x, h - y, c)
+            + parallel(h - x, h + y, c)
+            + parallel(h + x, h + y, c);
+    }
+    if n.z < -0.5 {
+        return 0.0;
+    }
+    // along the normal, and across it
+    let (own, across) = if n.x == 0.0 { (y * n.y, x) } else { (x * n.x, y) };
+    let [near, far] = [-h - own, h - own].map(|distance| distance.max(0.0));
+    let strip = |a: f64| perpendicular(a, h - across, c) + perpendicular(a, h + across, c);
+    strip(far) - strip(near)
+}
+
+/// The part of two bounces at (x, y, 1) on the cube's top for albedos of 1 and a radiance of 1: over the walls above z = 1, which see the whole light.
+fn two_bounces(x: f64, y: f64, h: f64) -> f64 {
+    let rule = gauss(16);
+    // finer towards the ceiling, near whose edge the light may be
+    let mut heights = vec![1.0, 2.0, 3.0];
+    heights.extend((0..24).map(|i| 4.0 - 0.5f64.powi(i)).skip(1));
+    heights.push(4.0);
+    let mut sum = 0.0;
+    for (own, across, wall) in
+        [(x, y, [1.0, 0.0]), (-x, y, [-1.0, 0.0]), (y, x, [0.0, 1.0]), (-y, x, [0.0, -1.0])]
+    {
+        for ends in heights.windows(2) {
+            for part in 0..32 {
+                for (s, ws) in &rule {
+                    for (t, wt) in &rule {
+                        let z = ends[0] + (ends[1] - ends[0]) * s;
+                        let along = -2.0 + (f64::from(part) + t) / 8.0;
+                        let at = if wall[1] == 0.0 {
+                            [2.0 * wall[0], along, z]
+                        } else {
+                            [along, 2.0 * wall[1], z]
+                        };
+                        let (up, away) = (z - 1.0, 2.0 - own);
+                        let r2 = up * up + away * away + (along - across).powi(2);
+                        let area = ws * wt * (ends[1] - ends[0]) / 8.0;
+                        sum += area * seen(&wall_vertex(at), h) * up * away / (r2 * r2);
+                    }
+                }
+            }
+        }
+    }
+    sum * FRAC_1_PI
+}
+
+/// A point on a wall, not on the edge that it may be rounded to.
+fn wall_vertex([x, y, z]: [f64; 3]) -> Vertex {
+    Vertex::at([x, y, z.min(4f64.next_down())]).unwrap()
+}
+
+/// The part of the hemisphere above (x, y, 0) that the light fills beside the cube's shadow: seen from the floor, a light's point is hidden if the way to it
+/// crosses the square [−½, ½]² before it has risen to z = 1. Gauss over each piece, cut where the shadow begins and ends.
+fn seen_from_floor(x: f64, y: f64, h: f64) -> f64 {
+    let hidden = |lx: f64, ly: f64| {
+        // slabs in the plane, over the first quarter of the way
+        let (mut from, mut to) = (0.0f64, 0.25f64);
+        for (origin, target) in [(x, lx), (y, ly)] {
+            let way = target - origin;
+            if way == 0.0 {
+                if origin.abs() >= 0.5 {
+                    return false;
+                }
+                continue;
+            }
+            let (a, b) = ((-0.5 - origin) / way, (0.5 - origin) / way);
+            from = from.max(a.min(b));
+            to = to.min(a.max(b));
+        }
+        from < to
+    };
+    let rule = gauss(8);
+    let row = |ly: f64| {
+        let mut ends = vec![-h];
+        for i in 0..200 {
+            let (mut a, mut b) = (-h + h * f64::from(i) / 100.0, -h + h * f64::from(i + 1) / 100.0);
+            if hidden(a, ly) != hidden(b, ly) {
+                for _ in 0..50 {
+                    let middle = 0.5 * (a + b);
+                    if hidden(middle, ly) == hidden(a, ly) { a = middle } else { b = middle }
+                }
+                ends.push(a);
+            }
+        }
+        ends.push(h);
+        let mut sum = 0.0;
+        for piece in ends.windows(2) {
+            let (low, width) = (piece[0], piece[1] - piece[0]);
+            if !hidden(low + 0.5 * width, ly) {
+                sum += rule
+                    .iter()
+                    .map(|(t, w)| {
+                        let r2 = (low + width * t - x).powi(2) + (ly - y).powi(2) + 16.0;
+                        w * width * 16.0 / (r2 * r2)
+                    })
+                    .sum::<f64>();
+            }
+        }
+        sum
+    };
+    let rows = 400;
+    let step = 2.0 * h / f64::from(rows);
+    let sum: f64 = (0..rows)
+        .flat_map(|i| rule.iter().map(move |(t, w)| (i, *t, *w)))
+        .map(|(i, t, w)| w * step * row(-h + (f64::from(i) + t) * step))
+        .sum();
+    sum * FRAC_1_PI
+}
+
+#[test]
+fn truths_are_the_worksheets() {
+    let p = Vertex::at([0.0, 0.0, 1.0]).unwrap();
+    assert!((8.0 * seen(&p, 0.5) - 0.2728543591976926).abs() <= 1e-15);
+    let two = 4.0 * two_bounces(0.0, 0.0, 0.5);
+    assert!((two / 0.039903921548169116 - 1.0).abs() <= 1e-10, "{two}");
+    // where nothing is hidden the floor sees what Howell says
+    let far = Vertex::at([1.7, 0.2, 0.0]).unwrap();
+    assert!((seen_from_floor(1.7, 0.2, 1.0) / seen(&far, 1.0) - 1.0).abs() <= 1e-12);
+}
+
+// ---- the furnace ---------------------------------------------------------------------------------------------------
+
+const ALBEDOS: [f64; 4] = [0.2, 0.5, 0.8, 0.99];
+
+fn furnace(albedo: f64) -> Scene {
+    Scene {
+        wall_albedo: albedo,
+        cube_albedo: albedo,
+        light_half_width: 0.0,
+        emission: 1.0,
+        ..Scene::default()
+    }
+}
+
+fn close(given: f64, exact: f64) -> bool {
+    (given - exact).abs() <= 64.0 * f64::EPSILON * exact
+}
+
+/// Every face emits 1 and reflects ρ: ρᵏ after k bounces. With cosine directions every single draw is exact.
+#[test]
+fn the_furnace_is_exact_with_cosine_directions() {
+    let points = [
+        [0.0, 0.0, 1.0],
+        [0.5, 0.1, 0.3],
+        [1.0, 1.0, 0.0],
+        [2.0, 0.3, 3.0],
+        [0.0, 0.0, 4.0],
+        [2.0, 2.0, 4.0],
+    ];
+    for albedo in ALBEDOS {
+        for (light, point) in FindLight::ALL.into_iter().flat_map(|light| points.map(|point| (light, point)))
+        {
+            let scene = Scene { point, ..furnace(albedo) };
+            let mut sum = 0.0;
+            for k in 0..=64 {
+                sum += albedo.powi(k as i32);
+                let mut rng = Stream::new(common::seed(420), k.into());
+                for _ in 0..if k < 4 { 50 } else { 2 } {
+                    assert!(close(
+                        paths(scene, Exactly(k), (Cosine, light)).draw(&mut rng),
+                        albedo.powi(k as i32)
+                    ));
+                    assert!(close(paths(scene, UpTo(k), (Cosine, light)).draw(&mut rng), sum));
+                }
+            }
+        }
+    }
+}
+
+/// With uniform ones a draw is Σ ρᵏ Π 2 cos θ with cos θ = 1 − u: linear in every u, so that two of Gauss's nodes give the mean, whatever the angles φ.
+#[test]
+fn the_furnace_is_exact_with_uniform_directions() {
+    let rule = gauss(2);
+    let mut phi = Stream::new(common::seed(421), 0);
+    for albedo in ALBEDOS {
+        for k in 0..=6u32 {
+            for light in FindLight::ALL {
+                let exactly = paths(furnace(albedo), Exactly(k), (Uniform, light));
+                let up_to = paths(furnace(albedo), UpTo(k), (Uniform, light));
+                let mut means = [0.0; 2];
+                for nodes in 0..1u32 << k {
+                    let mut script = Vec::new();
+                    let mut weight = 1.0;
+                    for bounce in 0..k {
+                        let (u, w) = rule[(nodes >> bounce & 1) as usize];
+                        script.extend([u, phi.uniform()]);
+                        weight *= w;
+                    }
+                    means[0] += weight * exactly.draw(&mut Stream::scripted(&script));
+                    means[1] += weight * up_to.draw(&mut Stream::scripted(&script));
+                }
+                let sum: f64 = (0..=k as i32).map(|j| albedo.powi(j)).sum();
+                assert!(close(means[0], albedo.powi(k as i32)) && close(means[1], sum), "{means:?}");
+            }
+        }
+    }
+}
+
+/// Coins put in by hand: a path goes on for U < q, and not for U ≥ q. Its draw is then Σ (ρ/q)ᵏ over the bounces that it made, and since it makes k of them or more with
+/// probability qᵏ, its mean is 1/(1 − ρ).
+#[test]
+fn roulette_in_the_furnace_is_exact() {
+    let mut phi = Stream::new(common::seed(422), 0);
+    for albedo in ALBEDOS {
+        for q in [0.3, 0.75, albedo, 0.9999] {
+            let by_q = paths(furnace(albedo), All(q), (Cosine, ByChance));
+            // the largest numbers of the grid that go on, and the smallest ones that do not
+            let (below, above) = ((q * 2f64.powi(53)).ceil() - 1.0, (q * 2f64.powi(53)).ceil());
+            let [below, above] = [below, above].map(|k| k * 2f64.powi(-53));
+            for bounces in 0..8 {
+                let mut script = Vec::new();
+                for _ in 0..bounces {
+                    // a coin between grid points asks for a second number; 0.3 is on none, others are
+                    let coin =
+                        if (q - below) * 2f64.powi(53) >= 1.0 { below } else { below - 2f64.powi(-53) };
+                    script.extend([phi.uniform(), phi.uniform(), coin]);
+                }
+                script.extend([phi.uniform(), phi.uniform(), above]);
+                let exact: f64 = (0..=bounces).map(|k| (albedo / q).powi(k)).sum();
+                assert!(close(by_q.draw(&mut Stream::scripted(&script)), exact));
+            }
+        }
+        // by weight it goes on with probability ρ, and every vertex counts 1
+        let by_weight = paths(furnace(albedo), AllByWeight, (Cosine, ByChance));
+        for bounces in 0..8u32 {
+            let mut script: Vec<f64> =
+                (0..bounces).flat_map(|_| [phi.uniform(), phi.uniform(), albedo * (1.0 - 1e-15)]).collect();
+            script.extend([phi.uniform(), phi.uniform(), albedo * (1.0 + 1e-15)]);
+            assert_eq!(by_weight.draw(&mut Stream::scripted(&script)), f64::from(bounces + 1));
+        }
+    }
+}
+
+/// All bounces by drawing, where no draw is bounded, too: ρ² or (4/3)ρ² is below q.
+#[test]
+fn the_furnace_without_a_limit() {
+    for (i, (albedo, bounces, directions)) in [
+        (0.2, All(0.5), Uniform),
+        (0.07, AllByWeight, Uniform),
+        (0.5, All(0.85), Cosine),
+        (0.05, AllByWeight, Cosine),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let found =
+            plain(&paths(furnace(albedo), bounces, (directions, ByChance)), 11_000_000, 430 + i as u64);
+        found.assert(1.0 / (1.0 - albedo), 0.0, 1e-3, &format!("{bounces:?}, {directions:?}, ρ = {albedo}"));
+    }
+}
+
+// ---- direct light --------------------------------------------------------------------------------------------------
+
+/// A point that the cube hides no light from: on the cube; on a wall, since what goes from there to the ceiling is above z = 1 when it is over the cube; or on the floor,
+/// a third of 2 + h away from the middle.
+fn free_point(h: f64, rng: &mut Stream) -> [f64; 3] {
+    loop {
+        let face = Face::ALL[(rng.uniform() * 11.0) as usize];
+        let [low, high] = face.bounds();
+        let u = DVec3::new(rng.uniform(), rng.uniform(), rng.uniform());
+        let point = low + (high - low) * u;
+        let away = point.x.abs().max(point.y.abs());
+        if (face == Face::Floor && away < (2.0 + h) / 3.0) || face == Face::Ceiling {
+            continue;
+        }
+        return point.to_array();
+    }
+}
+
+/// A light's size and a point from which a hundredth of the sky or more is light.
+fn lit_scene(rng: &mut Stream) -> (Scene, f64) {
+    loop {
+        let light_half_width = 0.3 + 1.6 * rng.uniform();
+        let point = free_point(light_half_width, rng);
+        let p = seen(&Vertex::at(point).unwrap(), light_half_width);
+        if p > 0.02 {
+            let [wall_albedo, cube_albedo] = [(); 2].map(|()| 0.1 + 0.9 * rng.uniform());
+            let scene =
+                Scene { wall_albedo, cube_albedo, radiance: 3.0, light_half_width, emission: 0.0, point };
+            return (scene, p);
+        }
+    }
+}
+
+#[test]
+fn direct_light_is_howells() {
+    let mut rng = Stream::new(common::seed(440), 0);
+    for i in 0..6 {
+        let (scene, p) = lit_scene(&mut rng);
+        let at = room(scene).point();
+        let truth = room(scene).albedo(&at) * scene.radiance * p;
+        assert!((room(scene).direct(&at) / truth - 1.0).abs() <= 1e-12);
+        for (j, way) in WAYS.into_iter().enumerate() {
+            let once = paths(scene, Exactly(1), way);
+            if way.1 == ByChance && p < 0.06 {
+                continue; // it would take too long
+            }
+            let side = if way.1 == BySampling { 100 } else { 500 };
+            let what = format!("{way:?} {:?} h = {:.2}", at.face(), scene.light_half_width);
+            held(&once, 2, side, 441 + 4 * i + j as u64, truth, 1e-3, &what);
+        }
+    }
+}
+
+/// Each draw that looks for the light along a cosine direction is 0 or ρ L_e, so its mean ρ L_e P gives its variance (ρ L_e)² P (1 − P).
+#[test]
+fn by_chance_a_draw_is_all_or_nothing() {
+    let once = paths(Scene::default(), Exactly(1), (Cosine, ByChance));
+    let mut rng = Stream::new(common::seed(445), 0);
+    let draws: Vec<f64> = (0..100_000).map(|_| once.draw(&mut rng)).collect();
+    assert!(draws.iter().all(|x| *x == 0.0 || *x == 8.0) && draws.contains(&8.0));
+    let found = Estimate::from_draws(&draws);
+    let (p, n) = (found.mean() / 8.0, 1e5);
+    assert!((found.variance().unwrap() / (64.0 * p * (1.0 - p) * n / (n - 1.0)) - 1.0).abs() <= 1e-12);
+}
+
+/// Lights of other shapes through section 3's estimator: a triangle and a pentagon, one partly below the horizon.
+#[test]
+fn polygonal_lights_fill_their_part_of_the_sky() {
+    let surface = Lambertian::new(0.61).unwrap();
+    let triangle = [[0.4, -0.5, 1.0], [1.2, 0.3, 0.8], [-0.2, 0.9, 1.1]];
+    let low = [[1.0, -0.8, -0.4], [0.9, 0.9, -0.1], [0.6, 0.2, 1.2]];
+    for (i, corners) in [triangle, low].into_iter().enumerate() {
+        let [a, b, c] = corners.map(DVec3::from_array);
+        let sides = [a.cross(b), b.cross(c), c.cross(a)];
+        let turn = sides[0].dot(c).signum();
+        let lit = |w: DVec3| sides.iter().all(|side| side.dot(w) * turn > 0.0);
+        let cosine = surface.cosine_estimator(|w| if lit(w.vector()) { 7.0 } else { 0.0 });
+        // ∫ cos θ cos θ′/(πr²) over the part above the horizon: cos θ is 0 below, which Gauss's nodes see if there are enough
+        let rule = gauss(16);
+        let area = (b - a).cross(c - b);
+        let mut p = 0.0;
+        for (i, j) in (0..64).flat_map(|i| (0..64).map(move |j| (i, j))) {
+            for ((s, ws), (t, wt)) in rule.iter().flat_map(|s| rule.iter().map(move |t| (s, t))) {
+                let (s, t) = ((f64::from(i) + s) / 64.0, (f64::from(j) + t) / 64.0);
+                let v = a + (b - a) * s + (c - b) * (s * t);
+                p += ws * wt * s * area.dot(v).abs() * v.z.max(0.0) / v.length_squared().powi(2) / 4096.0;
+            }
+        }
+        p *= FRAC_1_PI;
+        let known = unbiased::box_room::form_factor(&[a, b, c], DVec3::ZERO, DVec3::Z);
+        assert!((known / p - 1.0).abs() <= 1e-6, "{known} {p}");
+        held(&cosine, 2, 800, 450 + i as u64, 0.61 * 7.0 * p, 1e-3, "polygon");
+    }
+}
+
+#[test]
+fn shadows_of_the_cube_are_where_they_belong() {
+    let points = [([0.7, 0.1], 1.3), ([-0.45, 0.62], 1.7), ([-0.9, 0.0], 1.9)];
+    for (i, ([x, y], h)) in points.into_iter().enumerate() {
+        let scene = Scene { light_half_width: h, point: [x, y, 0.0], ..Scene::default() };
+        let free = seen(&room(scene).point(), h);
+        let part = seen_from_floor(x, y, h);
+        println!("{:.3} of the light is seen", part / free);
+        assert!(part < 0.995 * free);
+        for (j, way) in WAYS.into_iter().enumerate() {
+            let once = paths(scene, Exactly(1), way);
+            held(&once, 2, 300, 460 + 4 * i as u64 + j as u64, 5.0 * part, 1e-3, &format!("{way:?}"));
+        }
+    }
+}
+
+// ---- two bounces ---------------------------------------------------------------------------------------------------
+
+/// By chance a bias of 1e-2 is caught here, in the next test one of 1e-3.
+#[test]
+fn two_bounces_are_the_quadratures() {
+    two_bounces_hold(1..2, 1e-2);
+}
+
+/// `cargo test --release --test paths -- --ignored`
+#[test]
+#[ignore = "takes minutes"]
+fn two_bounces_are_the_quadratures_by_chance_too() {
+    two_bounces_hold(0..4, 1e-3);
+}
+
+fn two_bounces_hold(scenes: std::ops::Range<u64>, caught_by_chance: f64) {
+    for i in scenes {
+        let mut rng = Stream::new(common::seed(480), i);
+        let mut between = |low: f64, high: f64| low + (high - low) * rng.uniform();
+        let h = if i == 0 { 0.5 } else { between(1.0, 1.9) };
+        let (x, y) = if i == 0 { (0.0, 0.0) } else { (between(-0.5, 0.5), between(-0.5, 0.5)) };
+        let (wall_albedo, cube_albedo) = (between(0.1, 1.0), between(0.1, 1.0));
+        let scene =
+            Scene { wall_albedo, cube_albedo, light_half_width: h, point: [x, y, 1.0], ..Scene::default() };
+        let truth = wall_albedo * cube_albedo * 10.0 * two_bounces(x, y, h);
+        let what = format!("h = {h:.2} at ({x:.2}, {y:.2})");
+        for (j, way) in WAYS.into_iter().enumerate() {
+            // by chance a small light is seen too seldom
+            if way.1 == ByChance && h == 0.5 {
+                continue;
+            }
+            let twice = paths(scene, Exactly(2), way);
+            let caught = if way.1 == ByChance { caught_by_chance } else { 1e-3 };
+            held(&twice, 4, 20, 481 + 4 * i + j as u64, truth, caught, &format!("{way:?} {what}"));
+        }
+        let scene_room = room(scene);
+        for (j, directions) in Hemisphere::ALL.into_iter().enumerate() {
+            let exact = reflected(scene_room, directions, |p_j, _| scene_room.direct(p_j));
+            held(
+                &exact,
+                2,
+                200,
+                500 + 2 * i + j as u64,
+                truth,
+                5e-4,
+                &format!("direct light plugged in, {what}"),
+            );
+            let once = paths(scene, Exactly(1), (directions, BySampling));
+            let estimated = reflected(scene_room, directions, |p_j, rng| once.light_from(p_j, rng));
+            held(
+                &estimated,
+                4,
+                20,
+                510 + 2 * i + j as u64,
+                truth,
+                1e-3,
+                &format!("an estimate plugged in, {what}"),
+            );
+        }
+    }
+}
+
+// ---- all light -----------------------------------------------------------------------------------------------------
+
+/// All light that is emitted is absorbed: ∫ (1 − ρ) E dA = π ∫ L_e dA, over walls, cube and the light itself. E(x) = π times the light that leaves
+/// what a cosine direction from x meets, with all its bounces and every shadow. If the faces emit, too, the draws vary little.
+#[test]
+fn what_is_emitted_is_absorbed() {
+    energy_is_balanced(1.0, 2.0, 1e-3);
+    energy_is_balanced(0.0, 10.0, 2e-2);
+}
+
+fn energy_is_balanced(emission: f64, radiance: f64, caught: f64) {
+    let scene = Scene {
+        wall_albedo: 0.2,
+        cube_albedo: 0.3,
+        light_half_width: 1.9,
+        emission,
+        radiance,
+        ..Scene::default()
+    };
+    let room = room(scene);
+    let surface: f64 = Face::ALL.iter().map(|face| face.area()).sum();
+    let light = 3.8 * 3.8;
+    let truth = PI * (radiance * light + emission * (surface - light));
+    for (i, (bounces, way)) in [(All(0.4), WAYS[0]), (UpTo(20), WAYS[1])].into_iter().enumerate() {
+        let all = paths(scene, bounces, way);
+        let absorbed = from_fn(|rng| {
+            // a point in proportion to area, the floor's by rejection
+            let x = loop {
+                let mut left = rng.uniform() * (surface + 1.0);
+                let area = |face: Face| if face == Face::Floor { 16.0 } else { face.area() };
+                let Some(face) = Face::ALL.into_iter().find(|face| {
+                    left -= area(*face);
+                    left < 0.0
+                }) else {
+                    continue;
+                };
+                let [low, high] = face.bounds();
+                let u = DVec3::new(rng.uniform(), rng.uniform(), rng.uniform());
+                match Vertex::at((low + (high - low) * u).to_array()) {
+                    Ok(vertex) if vertex.face() == face => break vertex,
+                    _ => {}
+                }
+            };
+            let from = nearest_hit(&x, x.to_room(&Cosine.sample(rng))).unwrap();
+            (1.0 - room.albedo(&x)) * PI * all.light_from(&from, rng) * surface
+        });
+        let what = format!("{bounces:?} {way:?}");
+        let pilot = plain(&absorbed, 100_000, 520 + i as u64).std_error;
+        let draws = 1e5 * (11.6 * pilot / (caught * truth)).powi(2);
+        plain(&absorbed, draws as u64, 524 + i as u64).assert(
+            truth,
+            0.0,
+            caught,
+            &format!("{what}, {draws:.1e} draws"),
+        );
+    }
+}
+
+/// The worksheet's cumulative values, each known to within 1e-5, which is 7e-5 of it or less.
+#[test]
+fn cumulative_light_is_the_worksheets() {
+    for (i, (k, value)) in [(1, 0.27285), (2, 0.31276), (3, 0.33502), (15, 0.35533)].into_iter().enumerate() {
+        let found = plain(&paths(Scene::default(), UpTo(k), WAYS[0]), 2_500_000, 530 + i as u64);
+        found.assert(value, 1e-5, 1e-3 + 2e-3 * f64::from(u8::from(k > 2)), &format!("up to {k} bounces"));
+    }
+}
+
+/// Every way against every other, with a large light that is found by chance, too, faces that emit, and an end of every kind.
+#[test]
+fn all_ways_agree() {
+    let scene = Scene {
+        wall_albedo: 0.4,
+        cube_albedo: 0.7,
+        light_half_width: 1.7,
+        emission: 1.0,
+        radiance: 2.0,
+        point: [0.5, 0.1, 0.4],
+    };
+    let draws = 600_000;
+    for (j, group) in [
+        vec![Exactly(1)],
+        vec![Exactly(2)],
+        vec![Exactly(3)],
+        vec![UpTo(3)],
+        vec![All(0.75), AllByWeight, UpTo(30)],
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let mut found: Vec<(String, Found)> = Vec::new();
+        for (i, bounces) in group.into_iter().enumerate() {
+            for (k, way) in WAYS.into_iter().enumerate() {
+                let seed = 540 + 100 * j as u64 + 10 * i as u64 + k as u64;
+                let estimator = paths(scene, bounces, way);
+                assert_eq!(estimator.caution(), None);
+                found.push((format!("{bounces:?} {way:?}"), plain(&estimator, draws, seed)));
+            }
+        }
+        for (i, (a, one)) in found.iter().enumerate() {
+            for (b, other) in &found[..i] {
+                one.agrees(*other, 3e-2, &format!("{a} and {b}"));
+            }
+        }
+    }
+}
+
+/// On one and the same path UpTo(K) finds what Exactly(0), …, Exactly(K) find, if neither samples the light: the numbers drawn are the same.
+#[test]
+fn bounces_add_up_path_by_path() {
+    let scene = Scene { light_half_width: 1.9, emission: 0.25, ..Scene::default() };
+    for directions in Hemisphere::ALL {
+        for block in 0..2000 {
+            let draw = |bounces| {
+                paths(scene, bounces, (directions, ByChance)).draw(&mut Stream::new(common::seed(541), block))
+            };
+            let sum: f64 = (0..=6).map(|k| draw(Exactly(k))).sum();
+            assert!((draw(UpTo(6)) - sum).abs() <= 1e-14 * sum);
+        }
+    }
+}
+
+// ---- paths as they are drawn ---------------------------------------------------------------------------------------
+
+#[test]
+fn a_traced_path_is_the_one_drawn() {
+    let scenes = [
+        Scene::default(),
+        Scene { light_half_width: 1.9, emission: 0.5, point: [1.0, 0.2, 0.0], ..Scene::default() },
+        Scene { light_half_width: 0.0, emission: 0.5, point: [0.0, 0.0, 4.0], ..Scene::default() },
+    ];
+    for scene in scenes {
+        let room = room(scene);
+        for way in WAYS {
+            for bounces in [Exactly(0), Exactly(2), UpTo(0), UpTo(3), All(0.8), AllByWeight] {
+                let estimator = paths(scene, bounces, way);
+                for block in 0..200 {
+                    let mut rng = Stream::new(common::seed(542), block);
+                    let path = estimator.trace(&mut rng);
+                    let mut again = Stream::new(common::seed(542), block);
+                    assert_eq!(path.light.to_bits(), estimator.draw(&mut again).to_bits());
+                    assert_eq!(rng.random_numbers(), again.random_numbers());
+                    assert_eq!(rng.evaluations(), again.evaluations());
+                    assert_eq!(path.vertices[0], room.point());
+                    for pair in path.vertices.windows(2) {
+                        let way = pair[1].position() - pair[0].position();
+                        assert!(pair[0].normal().dot(way) > 0.0 && pair[1].normal().dot(way) < 0.0);
+                        assert!(visible(&pair[0], pair[1].position()) && !room.is_light(&pair[0]));
+                        let [low, high] = pair[1].face().bounds();
+                        assert!(pair[1].position().cmpge(low).all() && pair[1].position().cmple(high).all());
+                    }
+                    for sample in &path.samples {
+                        let from = &path.vertices[sample.from];
+                        assert!(
+                            sample.point.z == 4.0
+                                && sample.point.x.abs().max(sample.point.y.abs()) <= scene.light_half_width
+                        );
+                        let above = from.normal().dot(sample.point - from.position()) > 0.0
+                            && from.position().z < 4.0;
+                        assert_eq!(sample.visible, above && visible(from, sample.point));
+                    }
+                    let sampled = way.1 == BySampling && scene.light_half_width > 0.0;
+                    assert!(sampled || path.samples.is_empty());
+                    // the light is sampled once at every vertex that counts, and no vertex is visited for nothing
+                    match bounces {
+                        Exactly(0) | UpTo(0) => assert_eq!((path.vertices.len(), path.samples.len()), (1, 0)),
+                        Exactly(2) if sampled && scene.emission == 0.0 => {
+                            let lit = room.is_light(&path.vertices[1]);
+                            assert_eq!((path.vertices.len(), path.samples.len()), (2, usize::from(!lit)));
+                        }
+                        UpTo(3) if sampled => {
+                            let dark = path.vertices.iter().take(3).filter(|v| !room.is_light(v)).count();
+                            assert_eq!(path.samples.len(), dark);
+                        }
+                        UpTo(3) => assert!(
+                            path.vertices.len() == 4
+                                || path.vertices.last().is_some_and(|v| room.is_light(v))
+                        ),
+                        _ => {}
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    for way in WAYS {
+        for bounces in [Exactly(2), All(0.7), AllByWeight] {
+            let estimator = paths(Scene::default(), bounces, way);
+            let bits = [1, 2, 5].map(|threads| {
+                let run = Run::new(common::seed(543)).threads(threads);
+                let found = run.estimate(&estimator, Budget::Draws(200_000)).unwrap();
+                (found.estimate.mean().to_bits(), found.estimate.std_error().unwrap().to_bits(), found.cost)
+            });
+            assert!(bits[0] == bits[1] && bits[1] == bits[2]);
+        }
+    }
+}
+
+#[test]
+fn a_seed_keeps_its_paths() {
+    let scene = Scene { light_half_width: 1.9, emission: 0.125, ..Scene::default() };
+    let mut rng = Stream::new(1, 0);
+    let mut bits = Vec::new();
+    for way in WAYS {
+        for bounces in [UpTo(3), All(0.8), AllByWeight] {
+            bits.push(paths(scene, bounces, way).draw(&mut rng).to_bits());
+        }
+    }
+    let found = (rng.random_numbers(), rng.evaluations());
+    assert_eq!((bits.as_slice(), found), (GOLDEN.as_slice(), COUNTS), "{bits:#x?}");
+}
+
+const GOLDEN: [u64; 12] = [
+    0x400d340dfdb687c4,
+    0x400fcc124e26b412,
+    0x401baac300786a62,
+    0x400a3e421dbbdabe,
+    0x40121bebb5be2207,
+    0x4007e3ba6ab23a70,
+    0x4020400000000000,
+    0x401a000000000000,
+    0x3fc0000000000000,
+    0x3fd7ec8f800a650d,
+    0x3fc56c576fdb7f64,
+    0x3fc0000000000000,
+];
+
+const COUNTS: (u64, u64) = (98, 36);
+
+// ---- cautions, errors and ends -------------------------------------------------------------------------------------
+
+#[test]
+fn a_caution_says_when_the_variance_may_be_infinite() {
+    let with = |wall_albedo, cube_albedo, light_half_width| Scene {
+        wall_albedo,
+        cube_albedo,
+        light_half_width,
+        ..Scene::default()
+    };
+    let says = |scene, bounces, way| paths(scene, bounces, way).caution();
+    // q against ρ² and (4/3)ρ² of the larger albedo, whichever it is
+    for scene in [with(0.5, 0.8, 0.5), with(0.8, 0.1, 0.5)] {
+        for light in FindLight::ALL {
+            assert_eq!(says(scene, All(0.6400001), (Cosine, light)), None);
+            let told = "the variance may be infinite, and the error bar too short: q = 0.64 is not above ρ² = 0.6400 for the largest albedo";
+            assert_eq!(says(scene, All(0.64), (Cosine, light)).unwrap(), told);
+            assert!(says(scene, All(0.2), (Cosine, light)).is_some());
+            assert_eq!(says(scene, All(0.86), (Uniform, light)), None);
+            let told = "the variance may be infinite, and the error bar too short: q = 0.85 is not above (4/3)ρ² = 0.8533 for the largest albedo";
+            assert_eq!(says(scene, All(0.85), (Uniform, light)).unwrap(), told);
+        }
+    }
+    // by weight: never with cosine directions; with uniform ones from ρ² = 3/4 on
+    assert_eq!(says(with(0.5, 0.99, 0.5), AllByWeight, WAYS[0]), None);
+    assert_eq!(says(with(0.5, 0.86, 0.5), AllByWeight, WAYS[1]), None);
+    assert!(
+        says(with(0.5, 0.87, 0.5), AllByWeight, WAYS[1])
+            .unwrap()
+            .contains("q = 1 is not above (4/3)ρ² = 1.0092")
+    );
+    // a number of bounces ends every path
+    assert_eq!(says(with(1.0, 1.0, 0.5), UpTo(64), WAYS[1]), None);
+    // a light that touches the walls, sampled from there
+    let told = "the variance may be infinite, and the error bar too short: the light touches the walls, where its samples weigh without bound";
+    for bounces in [UpTo(2), Exactly(2), All(0.9), AllByWeight] {
+        assert_eq!(says(with(0.5, 0.5, 2.0), bounces, WAYS[0]).unwrap(), told);
+        assert_eq!(says(with(0.5, 0.5, 2.0), bounces, WAYS[2]), None);
+        assert_eq!(says(with(0.5, 0.5, 2f64.next_down()), bounces, WAYS[0]), None);
+    }
+    assert_eq!(says(with(0.5, 0.5, 2.0), UpTo(1), WAYS[0]), None);
+}
+
+#[test]
+fn bad_paths_are_errors() {
+    let new = |scene, bounces| Paths::new(room(scene), bounces, Cosine, BySampling);
+    let says = |scene, bounces, sentence: &str| {
+        assert_eq!(new(scene, bounces).unwrap_err().to_string(), sentence);
+    };
+    for bounces in [Exactly(65), UpTo(65)] {
+        says(
+            Scene::default(),
+            bounces,
+            "the number of bounces must be at most 64 (without a limit, roulette ends the paths), not 65",
+        );
+    }
+    for (q, shown) in [
+        (0.0, "0"),
+        (-0.5, "-0.5"),
+        (1.0, "1"),
+        (0.9999000000000001, "0.9999000000000001"),
+        (f64::NAN, "NaN"),
+    ] {
+        let rest = "above 0 and at most 0.9999, where a path has ten thousand bounces";
+        says(
+            Scene::default(),
+            All(q),
+            &format!("the continuation probability q must be {rest}, not {shown}"),
+        );
+    }
+    for (wall_albedo, cube_albedo, shown) in
+        [(1.0, 0.5, "1"), (0.5, 1.0, "1"), (0.9990000000000001, 0.2, "0.9990000000000001")]
+    {
+        let rest = "at most 0.999 where nothing but absorption ends a path (or choose a q)";
+        let scene = Scene { wall_albedo, cube_albedo, ..Scene::default() };
+        says(scene, AllByWeight, &format!("the largest albedo must be {rest}, not {shown}"));
+        assert!(new(scene, All(0.9999)).is_ok() && new(scene, UpTo(64)).is_ok());
+    }
+    let scene = Scene { wall_albedo: 0.999, ..Scene::default() };
+    assert!(
+        new(scene, AllByWeight).is_ok() && new(scene, Exactly(64)).is_ok() && new(scene, All(5e-324)).is_ok()
+    );
+}
+
+/// Points everywhere, edges and corners too, lights of every size, ρ = 0 and 1, long paths: every draw is finite and not negative.
+#[test]
+fn no_scene_gives_anything_but_numbers() {
+    let mut points = vec![
+        [0.5, 0.5, 1.0],
+        [-0.5, 0.0, 1.0],
+        [0.5, 0.5, 0.5],
+        [0.5, 0.0, 0.0],
+        [0.5, 0.5, 0.0],
+        [2.0, 2.0, 0.0],
+        [-2.0, 0.0, 0.0],
+        [2.0, 2.0, 3.0],
+        [2.0, -2.0, 4.0],
+        [2.0, 0.0, 4f64.next_down()],
+        [2.0, 0.0, 5e-324],
+    ];
+    points.extend(Face::ALL.map(|face| {
+        let [low, high] = face.bounds();
+        if face == Face::Floor { [1.5, 0.1, 0.0] } else { (low * 0.375 + high * 0.625).to_array() }
+    }));
+    for point in points {
+        for light_half_width in [0.0, 1e-12, 0.4, 2.0] {
+            for albedo in [0.0, 0.7, 1.0] {
+                let scene = Scene {
+                    wall_albedo: albedo,
+                    cube_albedo: 1.0,
+                    radiance: 3.0,
+                    light_half_width,
+                    emission: 0.0,
+                    point,
+                };
+                let Ok(room) = BoxRoom::new(scene) else { continue };
+                for (directions, light) in WAYS {
+                    for bounces in [Exactly(0), UpTo(1), UpTo(64), All(0.9), All(0.9999)] {
+                        let long = bounces == All(0.9999);
+                        if long && (light_half_width < 2.0 || albedo < 1.0) {
+                            continue;
+                        }
+                        let estimator = Paths::new(room, bounces, directions, light).unwrap();
+                        let mut rng = Stream::new(common::seed(544), 0);
+                        for _ in 0..if long { 2 } else { 20 } {
+                            let draw = estimator.draw(&mut rng);
+                            assert!(draw >= 0.0 && draw.is_finite(), "{draw} {point:?} {bounces:?}");
+                            // along the ceiling no light arrives at once; without a light there is none
+                            let dark = point[2] == 4.0 && bounces == UpTo(1)
+                                || bounces == Exactly(0)
+                                || light_half_width == 0.0;
+                            assert!(!dark || draw == 0.0, "{draw} {point:?}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// k = 0 is what p emits itself, and a light that L̂_o is asked for at its own vertex shines.
+#[test]
+fn no_bounce_is_emission() {
+    let scene = Scene { emission: 0.75, ..Scene::default() };
+    let mut rng = Stream::new(common::seed(545), 0);
+    for way in WAYS {
+        assert_eq!(paths(scene, Exactly(0), way).draw(&mut rng), 0.75);
+        assert_eq!(paths(scene, UpTo(0), way).draw(&mut rng), 0.75);
+        let light = Vertex::at([0.1, 0.2, 4.0]).unwrap();
+        assert_eq!(paths(scene, UpTo(5), way).light_from(&light, &mut rng), 10.0);
+    }
+    assert_eq!(rng.random_numbers(), 0);
+}
