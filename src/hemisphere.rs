@@ -60,7 +60,7 @@ impl Direction {
         Ok(Self::of(((1.0 - cos_theta) * (1.0 + cos_theta)).sqrt(), cos_theta, phi.sin_cos()))
     }
 
-    #[inline]
+    #[inline(always)]
     fn of(sin_theta: f64, cos_theta: f64, (sin_phi, cos_phi): (f64, f64)) -> Self {
         Self(DVec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta))
     }
@@ -156,8 +156,8 @@ impl Hemisphere {
         Ok(self.invert(u, v))
     }
 
-    #[inline]
-    fn invert(self, u: f64, v: f64) -> Direction {
+    #[inline(always)]
+    pub(crate) fn invert(self, u: f64, v: f64) -> Direction {
         let (sin_theta, cos_theta) = match self {
             Self::Uniform => ((u * (2.0 - u)).sqrt(), 1.0 - u),
             Self::Cosine => (u.sqrt(), (1.0 - u).sqrt()),

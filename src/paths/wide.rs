@@ -475,3 +475,120 @@ impl<T: Real> Go<'_, T> {
         total(alive)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::box_room::Scene;
+    use crate::fast::tests::both;
+    use crate::paths::Bounces;
+    use crate::run::Estimator;
+
+    fn every_way(mut see: impl FnMut(Paths)) {
+        let scenes = [
+            Scene::default(),
+            Scene { emission: 0.3, ..Scene::default() },
+            Scene { light_half_width: 0.0, emission: 1.0, ..Scene::default() },
+            Scene { light_half_width: 1.7, wall_albedo: 0.9, point: [2.0, 0.3, 0.4], ..Scene::default() },
+            Scene { point: [0.5, 0.1, 0.6], cube_albedo: 0.0, ..Scene::default() },
+            Scene { point: [-1.1, 0.7, 0.0], ..Scene::default() },
+            Scene { point: [-1.1, -2.0, 3.0], ..Scene::default() },
+            Scene { point: [1.1, 0.7, 4.0], ..Scene::default() },
+        ];
+        let bounces = [0, 1, 2, 3, 15].map(Bounces::Exactly).into_iter();
+        let bounces = bounces.chain([0, 1, 4].map(Bounces::UpTo));
+        for bounces in bounces.chain([Bounces::All(0.6), Bounces::AllByWeight]) {
+            for scene in scenes {
+                for directions in Hemisphere::ALL {
+                    for light in FindLight::ALL {
+                        let room = BoxRoom::new(scene).unwrap();
+                        see(Paths::new(room, bounces, directions, light).unwrap());
+                    }
+                }
+            }
+        }
+    }
+
+    /// The random numbers of one lane, in the order in which the plain loop takes them.
+    fn of_lane(paths: &Paths, uniforms: &[f64], lane: usize) -> Vec<f64> {
+        let walk = Walk::<f64>::new(paths);
+        let mut taken = Vec::new();
+        let mut rows = uniforms.chunks_exact(LANES).map(|row| row[lane]);
+        for bounces in 0..paths.most_bounces() {
+            if walk.sampled && bounces + 1 >= paths.counted[0] {
+                taken.extend(rows.by_ref().take(2));
+            }
+            if bounces >= walk.last {
+                break;
+            }
+            taken.extend(rows.by_ref().take(2));
+        }
+        taken
+    }
+
+    /// Lane by lane the same light from the same uniform numbers as the plain loop, to rounding. A ray within 1e-14 of an edge may end on the other side of it,
+    /// which by the lengths of the edges happens to fewer than one path in 1e12 here.
+    #[test]
+    fn every_lane_is_a_path_of_the_plain_loop() {
+        let (mut lit, mut seed) = (0, 0);
+        every_way(|paths| {
+            if paths.ending != Ending::Never {
+                return;
+            }
+            seed += 1;
+            let mut uniforms = vec![0.0; 70 * LANES];
+            Stream::new(seed, 0).fill_uniform(&mut uniforms);
+            let mut filled = [0.0; LANES];
+            let mut rng = Stream::scripted(&uniforms);
+            paths.fill(&mut rng, &mut filled);
+            let mut rays = 0;
+            for (lane, light) in filled.into_iter().enumerate() {
+                let mut one = Stream::scripted(&of_lane(&paths, &uniforms, lane));
+                let plain = paths.draw(&mut one);
+                rays += one.evaluations();
+                assert!((light - plain).abs() <= 1e-12 * plain, "{light} and {plain} by {paths:?}");
+                lit += u32::from(light > 0.0);
+            }
+            assert_eq!(rng.evaluations(), rays, "{paths:?}");
+        });
+        assert!(lit > 1000, "{lit} paths found light");
+    }
+
+    /// The same bits with vectors of any width, and without: what this processor gives is what every other gives.
+    #[test]
+    fn wide_and_narrow_loops_have_the_same_bits() {
+        let mut seed = 0;
+        every_way(|paths| {
+            seed += 1;
+            for single in [false, true] {
+                let [wide, narrow] = both(|| {
+                    let (mut rng, mut draws) = (Stream::new(seed, 1), [0.0; 300]);
+                    if single {
+                        paths.in_f32().fill(&mut rng, &mut draws);
+                    } else {
+                        paths.fill(&mut rng, &mut draws);
+                    }
+                    (draws.map(f64::to_bits), rng.random_numbers(), rng.evaluations())
+                });
+                assert_eq!(wide, narrow, "{paths:?}");
+            }
+        });
+    }
+
+    /// Every draw is filled, whatever their number, and with a path of its own: as many different ones as there should be.
+    #[test]
+    fn any_number_of_draws_is_filled() {
+        let room = BoxRoom::new(Scene { emission: 0.3, ..Scene::default() }).unwrap();
+        for bounces in [Bounces::UpTo(3), Bounces::All(0.5), Bounces::AllByWeight] {
+            let paths = Paths::new(room, bounces, Hemisphere::Uniform, FindLight::BySampling).unwrap();
+            for count in [0, 1, 31, 32, 33, 255, 256, 257, 1000] {
+                let mut draws = vec![f64::NAN; count];
+                paths.fill(&mut Stream::new(9, count as u64), &mut draws);
+                assert!(draws.iter().all(|draw| *draw > 0.3), "{bounces:?}, {count}");
+                draws.sort_by(f64::total_cmp);
+                draws.dedup();
+                assert_eq!(draws.len(), count, "{bounces:?}");
+            }
+        }
+    }
+}
