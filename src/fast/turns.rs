@@ -55,7 +55,9 @@ const COS: [f64; 8] = [
     1.0 / 20_922_789_888_000.0,
 ];
 
+/// Σ cₙ zⁿ in pairs, and pairs of pairs (Estrin 1960): half as many steps that wait for each other.
 #[inline(always)]
-fn series(t2: f64, coefficients: [f64; 8]) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * t2 + coefficient)
+fn series(z: f64, c: [f64; 8]) -> f64 {
+    let (w, pair) = (z * z, |n: usize| c[n] + z * c[n + 1]);
+    (pair(0) + w * pair(2)) + (w * w) * (pair(4) + w * pair(6))
 }

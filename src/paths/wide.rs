@@ -283,22 +283,40 @@ impl<T: Real> NullaryFnOnce for Sample<'_, T> {
 
     #[inline(always)]
     fn call(self) -> u64 {
-        let (zero, one) = (T::of(0.0), T::of(1.0));
-        let mut rays = [zero; LANES];
+        let mut rays = [T::of(0.0); LANES];
         for (row, [u, v]) in self.rows.iter_mut().zip(self.pairs) {
-            let [x, y, z, normal_x, normal_y, normal_z, albedo, weight, mut light] = *row;
-            for lane in 0..self.lanes.min(LANES) {
-                let at = [x[lane], y[lane], z[lane]];
-                let normal = [normal_x[lane], normal_y[lane], normal_z[lane]];
-                let (sent, ray) = self.room.lit(at, normal, [u[lane], v[lane]]);
-                let reflected = weight[lane] * albedo[lane];
-                light[lane] = light[lane] + reflected * sent;
-                let counts = ray & (reflected != zero);
-                rays[lane] = rays[lane] + if counts { one } else { zero };
-            }
-            row[LIGHT] = light;
+            let [x, y, z, normal_x, normal_y, normal_z, albedo, weight, light] = row;
+            let (at, normal) = ([&*x, y, z], [&*normal_x, normal_y, normal_z]);
+            sample(self.room, self.lanes, u, v, at, normal, albedo, weight, light, &mut rays);
         }
         total(rays)
+    }
+}
+
+/// A sample of the light for each path of a row.
+#[allow(clippy::too_many_arguments)]
+#[inline(always)]
+fn sample<T: Real>(
+    room: Room<T>,
+    lanes: usize,
+    u: &Each<T>,
+    v: &Each<T>,
+    [x, y, z]: [&Each<T>; 3],
+    [normal_x, normal_y, normal_z]: [&Each<T>; 3],
+    albedo: &Each<T>,
+    weight: &Each<T>,
+    light: &mut Each<T>,
+    rays: &mut Each<T>,
+) {
+    let (zero, one) = (T::of(0.0), T::of(1.0));
+    for lane in 0..lanes.min(LANES) {
+        let at = [x[lane], y[lane], z[lane]];
+        let normal = [normal_x[lane], normal_y[lane], normal_z[lane]];
+        let (sent, ray) = room.lit(at, normal, [u[lane], v[lane]]);
+        let reflected = weight[lane] * albedo[lane];
+        light[lane] = light[lane] + reflected * sent;
+        let counts = ray & (reflected != zero);
+        rays[lane] = rays[lane] + if counts { one } else { zero };
     }
 }
 
@@ -394,85 +412,117 @@ impl<T: Real> Go<'_, T> {
     /// Along directions whose sin θ and cos θ come from a uniform number.
     #[inline(always)]
     fn along(self, sin_and_cos: impl Fn(T) -> (T, T)) -> u64 {
-        let (zero, one) = (T::of(0.0), T::of(1.0));
-        let [wall, cube_wall] = [T::of(Face::ROOM_HALF_WIDTH), T::of(Face::CUBE_HALF_WIDTH)];
-        let [height, cube_height] = [T::of(Face::ROOM_HEIGHT), T::of(Face::CUBE_HEIGHT)];
-        let mut alive = [zero; LANES];
+        let mut alive = [T::of(0.0); LANES];
         for (row, [u, v]) in self.rows.iter_mut().zip(self.pairs) {
-            let [
-                mut x,
-                mut y,
-                mut z,
-                mut normal_x,
-                mut normal_y,
-                mut normal_z,
-                mut albedo,
+            let [x, y, z, normal_x, normal_y, normal_z, albedo, weight, light] = row;
+            let at = (x, y, z, normal_x, normal_y, normal_z);
+            let Self { room, lanes, emitted, .. } = self;
+            go(
+                room,
+                emitted,
+                lanes,
+                &sin_and_cos,
+                u,
+                v,
+                at.0,
+                at.1,
+                at.2,
+                at.3,
+                at.4,
+                at.5,
+                albedo,
                 weight,
-                mut light,
-            ] = *row;
-            for lane in 0..self.lanes.min(LANES) {
-                let at = [x[lane], y[lane], z[lane]];
-                let normal = [normal_x[lane], normal_y[lane], normal_z[lane]];
-                // the direction in the face's own frame, and in the room
-                let (sin_theta, cos_theta) = sin_and_cos(u[lane]);
-                let (sin_phi, cos_phi) = v[lane].sin_cos_of_turns();
-                let (one_way, other_way) = (sin_theta * cos_phi, sin_theta * sin_phi);
-                let [across_x, across_y, across_z] = normal.map(|n| n != zero);
-                let dx = if across_x { normal[0] * cos_theta } else { one_way };
-                let dy = if across_x { one_way } else { other_way };
-                let dy = if across_y { normal[1] * cos_theta } else { dy };
-                let dz = if across_z { normal[2] * cos_theta } else { other_way };
-                let ([dx, dy, dz], inverse) = inverted([dx, dy, dz]);
-                // how far the room's planes are
-                let [ahead_x, ahead_y, ahead_z] = [dx, dy, dz].map(|d| d > zero);
-                let to_x = ((if ahead_x { wall } else { -wall }) - at[0]) * inverse[0];
-                let to_y = ((if ahead_y { wall } else { -wall }) - at[1]) * inverse[1];
-                let to_z = ((if ahead_z { height } else { zero }) - at[2]) * inverse[2];
-                let to_side = to_x.least(to_y);
-                let to_wall = to_side.least(to_z);
-                let on_z = to_z < to_side;
-                let on_y = to_y < to_x;
-                let (enters, leaves, on) = cube(at, inverse);
-                let is_cube = (enters < leaves) & (leaves > zero) & (enters <= to_wall);
-                let distance = if is_cube { enters.most(zero) } else { to_wall };
-                let hit_x = if is_cube { on[0] } else { !on_z & !on_y };
-                let hit_y = if is_cube { on[1] } else { !on_z & on_y };
-                let hit_z = if is_cube { on[2] } else { on_z };
-                let against = |hit: bool, ahead: bool| {
-                    let normal = if ahead { -one } else { one };
-                    if hit { normal } else { zero }
-                };
-                let n = [against(hit_x, ahead_x), against(hit_y, ahead_y), against(hit_z, ahead_z)];
-                // on its face exactly, and within it
-                let w = if is_cube { cube_wall } else { wall };
-                let top = if is_cube { cube_height } else { height };
-                let outwards = if is_cube { w } else { -w };
-                let put = |hit: bool, normal: T, at: T| {
-                    if hit { normal * outwards } else { at.most(-w).least(w) }
-                };
-                let new_x = put(hit_x, n[0], at[0] + dx * distance);
-                let new_y = put(hit_y, n[1], at[1] + dy * distance);
-                let within = (at[2] + dz * distance).most(zero).least(top);
-                let upper = is_cube | ahead_z;
-                let new_z = if hit_z { if upper { top } else { zero } } else { within };
-                let half = self.room.half_width;
-                let on_ceiling = hit_z & ahead_z;
-                let is_light = on_ceiling & (new_x.abs() <= half) & (new_y.abs() <= half);
-                let of_face = if is_cube { self.room.cube_albedo } else { self.room.wall_albedo };
-                albedo[lane] = if is_light { zero } else { of_face };
-                let emitted = if is_light { self.emitted[1] } else { self.emitted[0] };
-                light[lane] = light[lane] + weight[lane] * emitted;
-                x[lane] = new_x;
-                y[lane] = new_y;
-                z[lane] = new_z;
-                normal_x[lane] = n[0];
-                normal_y[lane] = n[1];
-                normal_z[lane] = n[2];
-                alive[lane] = alive[lane] + if weight[lane] != zero { one } else { zero };
-            }
-            *row = [x, y, z, normal_x, normal_y, normal_z, albedo, weight, light];
+                light,
+                &mut alive,
+            );
         }
         total(alive)
+    }
+}
+
+/// The paths of a row to their next vertices. Each array is an argument of its own, so that the compiler knows them apart.
+#[allow(clippy::too_many_arguments)]
+#[inline(always)]
+fn go<T: Real>(
+    room: Room<T>,
+    emitted: [T; 2],
+    lanes: usize,
+    sin_and_cos: &impl Fn(T) -> (T, T),
+    u: &Each<T>,
+    v: &Each<T>,
+    x: &mut Each<T>,
+    y: &mut Each<T>,
+    z: &mut Each<T>,
+    normal_x: &mut Each<T>,
+    normal_y: &mut Each<T>,
+    normal_z: &mut Each<T>,
+    albedo: &mut Each<T>,
+    weight: &Each<T>,
+    light: &mut Each<T>,
+    alive: &mut Each<T>,
+) {
+    let (zero, one) = (T::of(0.0), T::of(1.0));
+    let [wall, cube_wall] = [T::of(Face::ROOM_HALF_WIDTH), T::of(Face::CUBE_HALF_WIDTH)];
+    let [height, cube_height] = [T::of(Face::ROOM_HEIGHT), T::of(Face::CUBE_HEIGHT)];
+    for lane in 0..lanes.min(LANES) {
+        let at = [x[lane], y[lane], z[lane]];
+        let normal = [normal_x[lane], normal_y[lane], normal_z[lane]];
+        // the direction in the face's own frame, and in the room
+        let (sin_theta, cos_theta) = sin_and_cos(u[lane]);
+        let (sin_phi, cos_phi) = v[lane].sin_cos_of_turns();
+        let (one_way, other_way) = (sin_theta * cos_phi, sin_theta * sin_phi);
+        let [across_x, across_y, across_z] = normal.map(|n| n != zero);
+        let dx = if across_x { normal[0] * cos_theta } else { one_way };
+        let dy = if across_x { one_way } else { other_way };
+        let dy = if across_y { normal[1] * cos_theta } else { dy };
+        let dz = if across_z { normal[2] * cos_theta } else { other_way };
+        let ([dx, dy, dz], inverse) = inverted([dx, dy, dz]);
+        // how far the room's planes are
+        let [ahead_x, ahead_y, ahead_z] = [dx, dy, dz].map(|d| d > zero);
+        let to_x = ((if ahead_x { wall } else { -wall }) - at[0]) * inverse[0];
+        let to_y = ((if ahead_y { wall } else { -wall }) - at[1]) * inverse[1];
+        let to_z = ((if ahead_z { height } else { zero }) - at[2]) * inverse[2];
+        let to_side = to_x.least(to_y);
+        let to_wall = to_side.least(to_z);
+        let on_z = to_z < to_side;
+        let on_y = to_y < to_x;
+        let (enters, leaves, on) = cube(at, inverse);
+        let is_cube = (enters < leaves) & (leaves > zero) & (enters <= to_wall);
+        let distance = if is_cube { enters.most(zero) } else { to_wall };
+        let hit_x = if is_cube { on[0] } else { !on_z & !on_y };
+        let hit_y = if is_cube { on[1] } else { !on_z & on_y };
+        let hit_z = if is_cube { on[2] } else { on_z };
+        let against = |hit: bool, ahead: bool| {
+            let normal = if ahead { -one } else { one };
+            if hit { normal } else { zero }
+        };
+        let n = [against(hit_x, ahead_x), against(hit_y, ahead_y), against(hit_z, ahead_z)];
+        // on its face exactly, and within it
+        let w = if is_cube { cube_wall } else { wall };
+        let top = if is_cube { cube_height } else { height };
+        let outwards = if is_cube { w } else { -w };
+        let put = |hit: bool, normal: T, at: T| {
+            if hit { normal * outwards } else { at.most(-w).least(w) }
+        };
+        let new_x = put(hit_x, n[0], at[0] + dx * distance);
+        let new_y = put(hit_y, n[1], at[1] + dy * distance);
+        let within = (at[2] + dz * distance).most(zero).least(top);
+        let upper = is_cube | ahead_z;
+        let new_z = if hit_z { if upper { top } else { zero } } else { within };
+        let half = room.half_width;
+        let on_ceiling = hit_z & ahead_z;
+        let is_light = on_ceiling & (new_x.abs() <= half) & (new_y.abs() <= half);
+        let of_face = if is_cube { room.cube_albedo } else { room.wall_albedo };
+        albedo[lane] = if is_light { zero } else { of_face };
+        let emitted = if is_light { emitted[1] } else { emitted[0] };
+        light[lane] = light[lane] + weight[lane] * emitted;
+        x[lane] = new_x;
+        y[lane] = new_y;
+        z[lane] = new_z;
+        normal_x[lane] = n[0];
+        normal_y[lane] = n[1];
+        normal_z[lane] = n[2];
+        alive[lane] = alive[lane] + if weight[lane] != zero { one } else { zero };
     }
 }
 
