@@ -209,6 +209,19 @@ impl Lanes {
     }
 }
 
+impl Lanes {
+    /// Both halves of the next word of every lane.
+    #[inline(always)]
+    fn next_pairs(&mut self) -> [f32; 2 * LANES] {
+        let words = self.next();
+        let mut pairs = [0.0; 2 * LANES];
+        for lane in 0..LANES {
+            [pairs[lane], pairs[LANES + lane]] = halves(words[lane]);
+        }
+        pairs
+    }
+}
+
 struct Fill<'a> {
     lanes: &'a mut Lanes,
     uniforms: &'a mut [f64],
@@ -245,18 +258,13 @@ impl NullaryFnOnce for FillPairs<'_> {
     #[inline(always)]
     fn call(self) {
         let mut lanes = self.lanes.clone();
-        for row in self.uniforms.chunks_mut(2 * LANES) {
-            let words = lanes.next();
-            let mut pairs = [0.0; 2 * LANES];
-            for lane in 0..LANES {
-                let [low, high] = halves(words[lane]);
-                pairs[lane] = low;
-                pairs[LANES + lane] = high;
-            }
-            if let Ok(row) = <&mut [f32; 2 * LANES]>::try_from(&mut *row) {
-                *row = pairs;
-            } else {
-                row.copy_from_slice(&pairs[..row.len()]);
+        let (rows, rest) = self.uniforms.as_chunks_mut::<{ 2 * LANES }>();
+        for row in rows {
+            *row = lanes.next_pairs();
+        }
+        if !rest.is_empty() {
+            for (uniform, number) in rest.iter_mut().zip(lanes.next_pairs()) {
+                *uniform = number;
             }
         }
         *self.lanes = lanes;

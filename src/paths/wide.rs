@@ -152,9 +152,7 @@ impl<T: Real> Walk<'_, T> {
     /// Follows every path to its next vertex, whose own light counts if `counted`.
     fn go(&self, rows: &mut [Row<T>], pairs: &mut [[Each<T>; 2]], counted: bool, rng: &mut Stream) {
         T::fill(pairs.as_flattened_mut().as_flattened_mut(), rng);
-        let directions = self.paths.directions;
-        widest(Weigh { rows, pairs, lanes: LANES, directions });
-        self.trace(rows, pairs, counted, rng);
+        self.trace(rows, pairs, true, counted, rng);
     }
 
     /// The same for the paths that roulette lets go on.
@@ -174,15 +172,22 @@ impl<T: Real> Walk<'_, T> {
             _ => None,
         };
         widest(End { weight: &mut row[WEIGHT], coins, q, lanes: LANES });
-        self.trace(rows, pairs, true, rng);
+        self.trace(rows, pairs, false, true, rng);
     }
 
-    fn trace(&self, rows: &mut [Row<T>], pairs: &[[Each<T>; 2]], counted: bool, rng: &mut Stream) {
+    fn trace(
+        &self,
+        rows: &mut [Row<T>],
+        pairs: &[[Each<T>; 2]],
+        weigh: bool,
+        counted: bool,
+        rng: &mut Stream,
+    ) {
         let room = self.room;
         let of_faces = if counted { room.emission } else { T::of(0.0) };
         let of_light = if counted && !self.sampled { room.radiance } else { T::of(0.0) };
         let (directions, emitted) = (self.paths.directions, [of_faces, of_light]);
-        rng.count_evaluations(widest(Go { room, rows, pairs, lanes: LANES, directions, emitted }));
+        rng.count_evaluations(widest(Go { room, rows, pairs, lanes: LANES, directions, weigh, emitted }));
     }
 }
 
@@ -391,6 +396,8 @@ struct Go<'a, T> {
     pairs: &'a [[Each<T>; 2]],
     lanes: usize,
     directions: Hemisphere,
+    /// Whether weights are still to be multiplied by f_r cos θ/p(ω).
+    weigh: bool,
     /// By the faces and by the light.
     emitted: [T; 2],
 }
@@ -401,39 +408,26 @@ impl<T: Real> NullaryFnOnce for Go<'_, T> {
 
     #[inline(always)]
     fn call(self) -> u64 {
+        let (one, two) = (T::of(1.0), T::of(2.0));
         match self.directions {
-            Hemisphere::Cosine => self.along(|u| (u.sqrt(), (T::of(1.0) - u).sqrt())),
-            Hemisphere::Uniform => self.along(|u| ((u * (T::of(2.0) - u)).sqrt(), T::of(1.0) - u)),
+            Hemisphere::Cosine => self.along(|u| [u.sqrt(), (one - u).sqrt(), one]),
+            Hemisphere::Uniform => self.along(|u| [(u * (two - u)).sqrt(), one - u, two * (one - u)]),
         }
     }
 }
 
 impl<T: Real> Go<'_, T> {
-    /// Along directions whose sin θ and cos θ come from a uniform number.
+    /// Along directions whose sin θ, cos θ and cos θ/(π p) come from a uniform number.
     #[inline(always)]
-    fn along(self, sin_and_cos: impl Fn(T) -> (T, T)) -> u64 {
+    fn along(self, of_theta: impl Fn(T) -> [T; 3]) -> u64 {
         let mut alive = [T::of(0.0); LANES];
         for (row, [u, v]) in self.rows.iter_mut().zip(self.pairs) {
             let [x, y, z, normal_x, normal_y, normal_z, albedo, weight, light] = row;
             let at = (x, y, z, normal_x, normal_y, normal_z);
-            let Self { room, lanes, emitted, .. } = self;
+            let Self { room, lanes, emitted, weigh, .. } = self;
             go(
-                room,
-                emitted,
-                lanes,
-                &sin_and_cos,
-                u,
-                v,
-                at.0,
-                at.1,
-                at.2,
-                at.3,
-                at.4,
-                at.5,
-                albedo,
-                weight,
-                light,
-                &mut alive,
+                room, emitted, lanes, &of_theta, weigh, u, v, at.0, at.1, at.2, at.3, at.4, at.5, albedo,
+                weight, light, &mut alive,
             );
         }
         total(alive)
@@ -447,7 +441,8 @@ fn go<T: Real>(
     room: Room<T>,
     emitted: [T; 2],
     lanes: usize,
-    sin_and_cos: &impl Fn(T) -> (T, T),
+    of_theta: &impl Fn(T) -> [T; 3],
+    weigh: bool,
     u: &Each<T>,
     v: &Each<T>,
     x: &mut Each<T>,
@@ -457,18 +452,20 @@ fn go<T: Real>(
     normal_y: &mut Each<T>,
     normal_z: &mut Each<T>,
     albedo: &mut Each<T>,
-    weight: &Each<T>,
+    weight: &mut Each<T>,
     light: &mut Each<T>,
     alive: &mut Each<T>,
 ) {
     let (zero, one) = (T::of(0.0), T::of(1.0));
     let [wall, cube_wall] = [T::of(Face::ROOM_HALF_WIDTH), T::of(Face::CUBE_HALF_WIDTH)];
     let [height, cube_height] = [T::of(Face::ROOM_HEIGHT), T::of(Face::CUBE_HEIGHT)];
+    // two loops rather than one: a processor then works on several steps of each at a time
+    let (mut way_x, mut way_y, mut way_z) = ([zero; LANES], [zero; LANES], [zero; LANES]);
     for lane in 0..lanes.min(LANES) {
-        let at = [x[lane], y[lane], z[lane]];
         let normal = [normal_x[lane], normal_y[lane], normal_z[lane]];
         // the direction in the face's own frame, and in the room
-        let (sin_theta, cos_theta) = sin_and_cos(u[lane]);
+        let [sin_theta, cos_theta, cosine] = of_theta(u[lane]);
+        weight[lane] = weight[lane] * if weigh { albedo[lane] * cosine } else { one };
         let (sin_phi, cos_phi) = v[lane].sin_cos_of_turns();
         let (one_way, other_way) = (sin_theta * cos_phi, sin_theta * sin_phi);
         let [across_x, across_y, across_z] = normal.map(|n| n != zero);
@@ -476,7 +473,13 @@ fn go<T: Real>(
         let dy = if across_x { one_way } else { other_way };
         let dy = if across_y { normal[1] * cos_theta } else { dy };
         let dz = if across_z { normal[2] * cos_theta } else { other_way };
-        let ([dx, dy, dz], inverse) = inverted([dx, dy, dz]);
+        way_x[lane] = dx;
+        way_y[lane] = dy;
+        way_z[lane] = dz;
+    }
+    for lane in 0..lanes.min(LANES) {
+        let at = [x[lane], y[lane], z[lane]];
+        let ([dx, dy, dz], inverse) = inverted([way_x[lane], way_y[lane], way_z[lane]]);
         // how far the room's planes are
         let [ahead_x, ahead_y, ahead_z] = [dx, dy, dz].map(|d| d > zero);
         let to_x = ((if ahead_x { wall } else { -wall }) - at[0]) * inverse[0];
