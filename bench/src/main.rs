@@ -150,8 +150,8 @@ fn main() {
         });
     }
     for (row, time) in &best.0 {
-        let unit = if row.contains(" bounces") { "s to 1e-4" } else { "ns a draw" };
-        println!("{row:32} {time:10.5} {unit}");
+        let unit = if row.starts_with(|c: char| c == 'f' || c == 'm') { "s to 1e-4" } else { "ns a draw" };
+        println!("{row:32} {time:12.6} {unit}");
     }
     println!("\n| what | required | goal | measured |\n|---|---|---|---|");
     let print = |what: &str, required: &str, goal: &str, ratio: Option<f64>| {

@@ -93,8 +93,8 @@ impl<F: OfPair> NullaryFnOnce for Pairs<'_, F> {
         // an array that nothing else can refer to: a store into `draws` might change what `f` holds, for all that the compiler knows
         let mut values = [0.0; PAIRS];
         let count = self.draws.len().min(PAIRS);
-        for i in 0..count {
-            values[i] = self.f.of_pair(self.u[i], self.v[i]);
+        for ((value, u), v) in values[..count].iter_mut().zip(self.u).zip(self.v) {
+            *value = self.f.of_pair(*u, *v);
         }
         self.draws.copy_from_slice(&values[..count]);
     }
