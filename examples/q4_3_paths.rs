@@ -15,7 +15,7 @@ use unbiased::{Estimator, Result, figure};
 pub fn answer(options: &Options) -> Result<Vec<Answer>> {
     let room = BoxRoom::new(options.scene())?;
     let bounces = options.limit("bounces");
-    let exact = [room.one_bounce(), room.two_bounces()]; // after one bounce, and after two
+    let exact = [Some(room.one_bounce()), room.two_bounces()]; // after one bounce, and after two
 
     let mut drawings = Answer::new("4.3", "paths in the room")
         .figure(figure::two_bounces_converging(&room, options.seed)?)

@@ -62,7 +62,7 @@ pub fn answer(options: &Options) -> Result<Appendix> {
     })
 }
 
-fn directions(a: f64, trade: impl Fn(f64) -> Result<Trade>) -> Result<(f64, Comparison)> {
+fn directions(a: f64, trade: impl Fn(f64) -> Result<Trade>) -> Result<Comparison> {
     let (surface, light) = (Lambertian::new(0.8)?, CosinePower::new(a)?);
     let rivals = [Uniform, Cosine].map(|density| {
         let nature = if light.variance(surface, density).is_finite() {
@@ -70,10 +70,13 @@ fn directions(a: f64, trade: impl Fn(f64) -> Result<Trade>) -> Result<(f64, Comp
         } else {
             Nature::InfiniteVariance
         };
-        Rival::new(format!("{density:?}"), surface.estimator(move |w| light.incoming(w), density))
-            .nature(nature)
+        Rival::new(
+            format!("a = {a}: {density:?}").to_lowercase(),
+            surface.estimator(move |w| light.incoming(w), density),
+        )
+        .nature(nature)
     });
-    Ok((a, trade(light.reflected(surface))?.compare(&rivals)?))
+    trade(light.reflected(surface))?.compare(&rivals)
 }
 
 /// Points in the plane: independent pairs, all pairs, jittered and Sobol, over the test set and Genz's families.
@@ -134,7 +137,7 @@ fn endings(trade: impl Fn(f64) -> Result<Trade>) -> Result<Comparison> {
 
 fn ways_to_the_light(trade: impl Fn(f64) -> Result<Trade>) -> Result<Comparison> {
     let room = BoxRoom::new(Scene::default())?;
-    let truth = room.one_bounce().zip(room.two_bounces()).map_or(f64::NAN, |(one, two)| one + two);
+    let truth = room.one_bounce() + room.two_bounces().unwrap_or(f64::NAN);
     let mut rivals = Vec::new();
     for (name, directions, light) in [
         ("sampled, cosine", Cosine, FindLight::BySampling),
@@ -162,34 +165,9 @@ fn all_bounces(trade: impl Fn(f64) -> Result<Trade>) -> Result<Comparison> {
     trade(reference)?.compare(&rivals)
 }
 
-fn table(caption: String, comparison: &Comparison) -> Table {
-    let places = comparison.ranking();
-    let ranked = places.iter().map(|place| {
-        let remark = match place.rival.nature {
-            Nature::InfiniteVariance => "infinite variance",
-            _ if !place.rival.varies() => "no variance",
-            _ if place.rival.heavy_tail => "a few draws hold the variance",
-            _ if !place.set_apart => "as good as the one above",
-            _ => "",
-        };
-        row(place.rival, format!("{:.3}", place.of_the_best), remark.into())
-    });
-    let biased = comparison.rivals.iter().filter(|rival| rival.nature == Nature::Biased).map(|rival| {
-        let share = 100.0 * rival.bias() / rival.truth;
-        let overtaken = places.first().and_then(|best| rival.overtaken_at(best.rival));
-        let remark = match overtaken {
-            Some([seconds, error]) => {
-                format!(
-                    "bias {share:.2} %; overtaken after {seconds:.1e} s, at {:.2} %",
-                    100.0 * error / rival.truth
-                )
-            }
-            None => format!("bias {share:.2} %"),
-        };
-        row(rival, String::new(), remark)
-    });
+fn table<'a>(caption: &str, comparisons: impl IntoIterator<Item = &'a Comparison>) -> Table {
     Table {
-        caption,
+        caption: caption.into(),
         columns: vec![
             "estimator",
             "σ/truth",
@@ -202,14 +180,38 @@ fn table(caption: String, comparison: &Comparison) -> Table {
             "to 10⁻⁵",
             "remark",
         ],
-        rows: ranked.chain(biased).collect(),
+        rows: comparisons.into_iter().flat_map(ranked_rows).collect(),
     }
+}
+
+/// The unbiased ones by rank, then the biased.
+fn ranked_rows(comparison: &Comparison) -> Vec<Vec<String>> {
+    let places = comparison.ranking();
+    let ranked = places.iter().map(|place| {
+        let remark = match place.rival.nature {
+            Nature::InfiniteVariance => "infinite variance",
+            _ if !place.rival.varies() => "no variance",
+            _ if place.rival.heavy_tail => "a few draws hold the variance",
+            _ if !place.set_apart => "as good as the one above",
+            _ => "",
+        };
+        row(place.rival, format!("{:.3}", place.of_the_best), remark.into())
+    });
+    let biased = comparison.rivals.iter().filter(|rival| rival.nature == Nature::Biased).map(|rival| {
+        let mut remark = format!("bias {:.2} %", 100.0 * rival.bias() / rival.truth);
+        if let Some([seconds, error]) = places.first().and_then(|best| rival.overtaken_at(best.rival)) {
+            remark += &format!("; overtaken after {seconds:.1e} s, at {:.2} %", 100.0 * error / rival.truth);
+        }
+        row(rival, String::new(), remark)
+    });
+    ranked.chain(biased).collect()
 }
 
 fn row(rival: &Measured, efficiency: String, remark: String) -> Vec<String> {
     let [low, high] = rival.seconds_range;
-    let to = |error| rival.seconds_to(error).map_or("never".to_owned(), |seconds| format!("{seconds:.1e} s"));
-    let time = format!("{:.1} ± {:.1}", 1e9 * rival.seconds, 0.5e9 * (high - low));
+    let to =
+        |error| rival.seconds_to(error).map_or("never".to_owned(), |seconds| format!("{seconds:.1e}\u{a0}s"));
+    let time = format!("{:.1}\u{a0}±\u{a0}{:.1}", 1e9 * rival.seconds, 0.5e9 * (high - low));
     let spread = format!("{:.3}", rival.variance().sqrt() / rival.truth.abs());
     let mut cells = vec![rival.name.clone(), spread, format!("{:.2}", rival.evaluations), time, efficiency];
     cells.extend([1e-2, 1e-3, 1e-4, 1e-5].map(to));
@@ -228,7 +230,7 @@ fn points_table(points: &[(String, Comparison)]) -> Table {
         if let [independent, pairs, jittered_8, jittered_64, sobol_64, sobol_4096] = &comparison.rivals[..] {
             cells.extend([slope(jittered_8, jittered_64), slope(sobol_64, sobol_4096)]);
             let to = |rival: &Measured| {
-                rival.seconds_to(1e-3).map_or("never".into(), |seconds| format!("{seconds:.1e} s"))
+                rival.seconds_to(1e-3).map_or("never".into(), |seconds| format!("{seconds:.1e}\u{a0}s"))
             };
             cells.extend([independent, pairs, jittered_64, sobol_4096].map(to));
         }
