@@ -29,17 +29,14 @@ pub fn answer(options: &Options) -> Result<Appendix> {
     let endings = endings(trade)?;
     let (ways, all) = (ways_to_the_light(trade)?, all_bounces(trade)?);
 
-    let mut tables: Vec<Table> = Vec::new();
-    for (a, comparison) in &directions {
-        tables.push(table(format!("3.6: directions under a light cos^a θ, a = {a}"), comparison));
-    }
-    tables.push(points_table(&points));
-    tables
-        .push(table("5.3: roulette against truncation in the model with ρ = 0.8, v = 0.5".into(), &endings));
-    tables.push(table("4.3: the light found by chance or sampled, up to two bounces".into(), &ways));
-    tables.push(table("4.3: all bounces, ended by roulette or cut off".into(), &all));
-
-    let compared = directions.iter().map(|(_, comparison)| ("3.6", comparison));
+    let tables = vec![
+        table("3.6: directions under a light cos^a θ, for each a on their own", &directions),
+        points_table(&points),
+        table("5.3: roulette against truncation in the model with ρ = 0.8, v = 0.5", [&endings]),
+        table("4.3: the light found by chance or sampled, up to two bounces", [&ways]),
+        table("4.3: all bounces, ended by roulette or cut off", [&all]),
+    ];
+    let compared = directions.iter().map(|comparison| ("3.6", comparison));
     let compared = compared.chain(points.iter().map(|(_, comparison)| ("2.1", comparison)));
     let compared = compared.chain([("5.3", &endings), ("4.3", &ways), ("4.3", &all)]);
     let records = compared.flat_map(|(question, comparison)| {
