@@ -163,7 +163,8 @@ pub fn radiance_by_bounces(room: &BoxRoom, seed: u64) -> Result<Figure> {
     }
     let values =
         || exact.iter().map(|[_, y]| *y).chain(found.iter().map(|[_, y, ..]| *y)).filter(|y| *y > 0.0);
-    let (most, least) = (values().fold(1e-9, f64::max), values().fold(f64::INFINITY, f64::min).min(1.0));
+    // in the dark there is nothing to see, but axes need a height
+    let (least, most) = values().fold((1.0, 1.0), |(least, most): (f64, f64), y| (least.min(y), most.max(y)));
     let (low, high) = (10f64.powf(least.log10().floor()), 10f64.powf((2.0 * most).log10().ceil()));
     let mut panel = Panel::new(
         "Light by the number of bounces",
