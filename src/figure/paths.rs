@@ -181,7 +181,7 @@ pub fn radiance_by_bounces(room: &BoxRoom, seed: u64) -> Result<Figure> {
             Ink::Black,
             [k, y],
             Side::Above,
-            &format!("{y:.places$}", places = (1.5 - y.log10()).ceil().clamp(0.0, 6.0) as usize),
+            &format!("{y:.places$}", places = (2.0 - y.log10().floor()).clamp(0.0, 6.0) as usize),
         );
     }
     let top = high / (high / low).powf(0.07);
@@ -339,8 +339,8 @@ fn error_figure(
             panel.curve(label, ink, |c| if c >= work { series.rmse(c / work) } else { f64::NAN });
             panel.marks(label, ink, marker, series.measured.iter().map(|[n, rmse]| [n * work, *rmse]));
             if series.bias == 0.0 {
-                let between_points = 362.0;
-                panel.text(ink, [between_points * work, series.rmse(between_points)], side, label);
+                let past_the_points = low * (high / low).powf(0.55);
+                panel.text(ink, [past_the_points, series.rmse(past_the_points / work)], side, label);
             } else {
                 panel.text(ink, [high, 1.3 * series.bias.abs()], Side::Left, label);
             }
