@@ -59,6 +59,7 @@ pub mod density;
 pub mod error;
 pub mod estimate;
 mod extended;
+pub mod fast;
 #[cfg(feature = "workbook")]
 pub mod figure;
 pub mod hemisphere;
