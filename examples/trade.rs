@@ -7,13 +7,14 @@ use std::process::ExitCode;
 use unbiased::box_room::{BoxRoom, Scene};
 use unbiased::figure;
 use unbiased::hemisphere::Hemisphere::{Cosine, Uniform};
+use unbiased::inversion::Exponential;
 use unbiased::lambertian::{CosinePower, Lambertian, Light};
 use unbiased::paths::{Bounces, FindLight, Paths};
 use unbiased::rectangle::{Family, Genz, Integrand, Rectangle};
 use unbiased::roulette::LightModel;
 use unbiased::trade::{Comparison, Measured, Nature, Rival, Trade};
 use unbiased::workbook::{self, Answer, Appendix, Options, Table};
-use unbiased::{Budget, Result};
+use unbiased::{Budget, Estimator, Result, from_fn};
 
 /// The section, as the options ask.
 pub fn answer(options: &Options) -> Result<Appendix> {
@@ -28,17 +29,24 @@ pub fn answer(options: &Options) -> Result<Appendix> {
     let points = points(trade)?;
     let endings = endings(trade)?;
     let (ways, all) = (ways_to_the_light(trade)?, all_bounces(trade)?);
+    let (logarithms, precisions) = (logarithms(trade)?, precisions(trade)?);
 
     let tables = vec![
         table("3.6: directions under a light cos^a θ, for each a on their own", &directions),
+        table("1.1: the mean of an exponential, by two logarithms", [&logarithms]),
         points_table(&points),
         table("5.3: roulette against truncation in the model with ρ = 0.8, v = 0.5", [&endings]),
         table("4.3: the light found by chance or sampled, up to two bounces", [&ways]),
         table("4.3: all bounces, ended by roulette or cut off", [&all]),
+        table(
+            "4.3: one path after the other or many side by side, in double and in single precision",
+            [&precisions],
+        ),
     ];
     let compared = directions.iter().map(|comparison| ("3.6", comparison));
     let compared = compared.chain(points.iter().map(|(_, comparison)| ("2.1", comparison)));
     let compared = compared.chain([("5.3", &endings), ("4.3", &ways), ("4.3", &all)]);
+    let compared = compared.chain([("1.1", &logarithms), ("4.3", &precisions)]);
     let records = compared.flat_map(|(question, comparison)| {
         comparison.rivals.iter().map(move |rival| record(question, rival, options.seed))
     });
@@ -160,6 +168,32 @@ fn all_bounces(trade: impl Fn(f64) -> Result<Trade>) -> Result<Comparison> {
         Rival::new("up to 6 bounces", paths(Bounces::UpTo(6))?).nature(Nature::Biased),
     ];
     trade(reference)?.compare(&rivals)
+}
+
+/// The accurate logarithm against the fast one, which is within 1 ulp and goes wide.
+fn logarithms(trade: impl Fn(f64) -> Result<Trade>) -> Result<Comparison> {
+    let exponential = Exponential::new(0.37)?;
+    let rivals = [
+        Rival::new("fast logarithm, many at a time", exponential),
+        Rival::new("ln, one draw at a time", from_fn(move |rng| exponential.draw(rng))),
+        Rival::new(
+            "ln_1p, one draw at a time",
+            from_fn(move |rng| -(-rng.uniform()).ln_1p() / exponential.rate()),
+        ),
+    ];
+    trade(exponential.mean())?.compare(&rivals)
+}
+
+fn precisions(trade: impl Fn(f64) -> Result<Trade>) -> Result<Comparison> {
+    let room = BoxRoom::new(Scene::default())?;
+    let truth = room.one_bounce() + room.two_bounces().unwrap_or(f64::NAN);
+    let paths = Paths::new(room, Bounces::UpTo(2), Cosine, FindLight::BySampling)?;
+    let rivals = [
+        Rival::new("f32, many at a time", paths.in_f32()),
+        Rival::new("f64, many at a time", paths),
+        Rival::new("f64, one path after the other", from_fn(move |rng| paths.draw(rng))),
+    ];
+    trade(truth)?.compare(&rivals)
 }
 
 fn table<'a>(caption: &str, comparisons: impl IntoIterator<Item = &'a Comparison>) -> Table {
