@@ -150,7 +150,7 @@ fn main() {
         });
     }
     for (row, time) in &best.0 {
-        let unit = if row.starts_with(|c: char| c == 'f' || c == 'm') { "s to 1e-4" } else { "ns a draw" };
+        let unit = if row.starts_with(['f', 'm']) { "s to 1e-4" } else { "ns a draw" };
         println!("{row:32} {time:12.6} {unit}");
     }
     println!("\n| what | required | goal | measured |\n|---|---|---|---|");
