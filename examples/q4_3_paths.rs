@@ -6,6 +6,7 @@
 use std::process::ExitCode;
 
 use unbiased::box_room::BoxRoom;
+use unbiased::check::Topic;
 use unbiased::hemisphere::Hemisphere::{Cosine, Uniform};
 use unbiased::paths::{Bounces, FindLight, Paths, reflected};
 use unbiased::workbook::{self, Answer, Options};
@@ -20,7 +21,8 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
     let mut drawings = Answer::new("4.3", "paths in the room")
         .figure(figure::two_bounces_converging(&room, options.seed)?)
         .figure(figure::occluded_fraction(200_000, options.seed)?)
-        .figure(figure::radiance_by_bounces(&room, options.seed)?);
+        .figure(figure::radiance_by_bounces(&room, options.seed)?)
+        .figure(figure::mistakes(Topic::Paths)?);
     for figure in figure::path_errors(&room, options.seed)? {
         drawings = drawings.figure(figure);
     }
