@@ -20,7 +20,7 @@ use unbiased::{Budget, Estimator, Result, from_fn};
 pub fn answer(options: &Options) -> Result<Appendix> {
     let seconds = match options.budget {
         Some(Budget::Time(time)) => time.as_secs_f64(),
-        _ => 0.05,
+        _ => 0.03,
     };
     let trade = |truth: f64| Trade::new(options.seed, truth)?.seconds_each(seconds);
 
