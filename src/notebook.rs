@@ -116,7 +116,10 @@ impl Show for Outcome {
             cost.random_numbers,
             cost.evaluations
         );
-        Shown::html(format!("{estimate} ({work})"), html! { b { (estimate) } span style=(FAINT) { " (" (work) ")" } })
+        Shown::html(
+            format!("{estimate} ({work})"),
+            html! { b { (estimate) } span style=(FAINT) { " (" (work) ")" } },
+        )
     }
 }
 
@@ -191,20 +194,23 @@ impl Show for Comparison {
         let ranks: Vec<(&Measured, f64)> =
             self.ranking().iter().map(|place| (place.rival, place.of_the_best)).collect();
         let rows = self.rivals.iter().map(|rival| {
-            let share = ranks.iter().find(|(ranked, _)| std::ptr::eq(*ranked, rival)).map(|(_, share)| *share);
-            let to = |error| rival.seconds_to(error).map_or("never".into(), |seconds| format!("{seconds:.1e} s"));
+            let share =
+                ranks.iter().find(|(ranked, _)| std::ptr::eq(*ranked, rival)).map(|(_, share)| *share);
+            let to = |error| rival.seconds_to(error).map_or("never".into(), duration);
             let efficiency = match rival.nature {
                 Nature::InfiniteVariance => "infinite variance".into(),
-                Nature::Biased => format!("bias {:.2} %", 100.0 * rival.bias() / rival.truth),
-                Nature::Unbiased => share.map_or(String::new(), |share| format!("{share:.3}")),
+                Nature::Biased => {
+                    format!("bias {} %", two_digits(100.0 * rival.bias() / rival.truth)).replace('-', "−")
+                }
+                Nature::Unbiased => share.map_or(String::new(), two_digits),
             };
-            let nanoseconds = format!("{:.1}", 1e9 * rival.seconds);
-            let error = format!("{:.2e}", rival.rmse(1.0) / rival.truth.abs());
-            vec![rival.name.clone(), nanoseconds, error, to(1e-3), to(1e-4), efficiency]
+            let error = format!("{} %", two_digits(100.0 * rival.rmse(1.0) / rival.truth.abs()));
+            let error = error.replace("∞ %", "∞");
+            vec![rival.name.clone(), duration(rival.seconds), error, to(1e-3), to(1e-4), efficiency]
         });
         Table {
             caption: "What a second buys, on one core of the machine that ran this".into(),
-            columns: vec!["estimator", "ns/draw", "error after 1 s", "to 0.1 %", "to 0.01 %", "efficiency"],
+            columns: vec!["estimator", "a draw", "error after 1 s", "to 0.1 %", "to 0.01 %", "efficiency"],
             rows: rows.collect(),
         }
         .show()
@@ -224,9 +230,11 @@ impl Show for Comparison {
 pub fn against(truth: f64, estimates: &[(&str, Estimate)]) -> Table {
     let minus = |number: String| number.replace('-', "−");
     let rows = estimates.iter().map(|(name, estimate)| {
-        let ratio = if truth == 0.0 { String::new() } else { minus(format!("{:.3}", estimate.mean() / truth)) };
+        let ratio =
+            if truth == 0.0 { String::new() } else { minus(format!("{:.3}", estimate.mean() / truth)) };
         let z = match estimate.z(truth) {
-            Some(z) if z.abs() < 1e3 => minus(format!("{z:.1}")),
+            // a sum with 0 makes 0 of −0
+            Some(z) if z.abs() < 1e3 => minus(format!("{:.1}", (10.0 * z).round() / 10.0 + 0.0)),
             Some(z) if z.is_infinite() => "no variance".into(),
             Some(z) => minus(format!("{z:.0}")),
             None => String::new(),
@@ -275,7 +283,9 @@ const CERTAIN: f64 = 5.0;
 pub fn check_mine(mine: &Attempt<'_>) -> Result<Checked> {
     match check::measure(mine, DRAWS, 1) {
         Ok(measurements) => Ok(Checked::Found(check::diagnose(&measurements)?)),
-        Err(Error::Draw { block: 0, draw: 0, value, .. }) if value.is_nan() => Ok(Checked::Missing(mine.topic())),
+        Err(Error::Draw { block: 0, draw: 0, value, .. }) if value.is_nan() => {
+            Ok(Checked::Missing(mine.topic()))
+        }
         Err(error) => Err(error),
     }
 }
@@ -310,8 +320,10 @@ impl Show for Checked {
         };
         let Shown { plain, rich } = diagnosis.show();
         let Some(within) = self.within() else { return Shown { plain, rich } };
-        let sentence =
-            format!("Unbiased within {:.2} % on every probe, {CERTAIN} std errors counted in.", 100.0 * within);
+        let sentence = format!(
+            "Unbiased within {:.2} % on every probe, {CERTAIN} std errors counted in.",
+            100.0 * within
+        );
         let rich = rich.map(|(kind, content)| (kind, said(Some(true), &sentence).into_string() + &content));
         Shown { plain: format!("{sentence}\n{plain}"), rich }
     }
@@ -336,6 +348,28 @@ fn said(good: Option<bool>, sentence: &str) -> Markup {
         None => ("?", "#888888"),
     };
     html! { div style=(format!("border-left: 4px solid {colour}; padding-left: 0.6em")) { b { (mark) } " " (sentence) } }
+}
+
+/// Seconds, in the unit that suits them.
+fn duration(seconds: f64) -> String {
+    let (factor, unit) = match seconds {
+        s if s < 1e-6 => (1e9, "ns"),
+        s if s < 1e-3 => (1e6, "µs"),
+        s if s < 1.0 => (1e3, "ms"),
+        _ => (1.0, "s"),
+    };
+    format!("{} {unit}", two_digits(factor * seconds))
+}
+
+/// Two significant digits, or all of a whole number.
+fn two_digits(x: f64) -> String {
+    if x.is_infinite() {
+        return "∞".into();
+    }
+    let places = (1.0 - x.abs().log10().floor()).clamp(0.0, 9.0);
+    // 0 has no first digit
+    let places = if x == 0.0 { 0 } else { places as usize };
+    format!("{x:.places$}")
 }
 
 /// Decimal places that show two digits of an error.
@@ -365,6 +399,18 @@ mod tests {
     }
 
     #[test]
+    fn numbers_are_short() {
+        for (seconds, shown) in
+            [(1.4e-9, "1.4 ns"), (2.51e-5, "25 µs"), (0.9, "900 ms"), (1.25, "1.2 s"), (3500.4, "3500 s")]
+        {
+            assert_eq!(duration(seconds), shown);
+        }
+        for (x, shown) in [(0.0, "0"), (0.00012345, "0.00012"), (-13.4, "-13"), (f64::INFINITY, "∞")] {
+            assert_eq!(two_digits(x), shown);
+        }
+    }
+
+    #[test]
     fn the_three_states_of_ones_own_estimator() {
         let state = |attempt: &Attempt<'_>| check_mine(attempt).unwrap().show().plain().to_owned();
         assert!(state(&Attempt::bounces(|_, _| f64::NAN)).starts_with("Missing"));
@@ -372,7 +418,10 @@ mod tests {
             albedo * light(&Hemisphere::Uniform.sample(rng))
         };
         let said = state(&Attempt::hemisphere(wrong));
-        assert!(said.starts_with("Not right.") && said.contains("uniform directions, the cosine weight"), "{said}");
+        assert!(
+            said.starts_with("Not right.") && said.contains("uniform directions, the cosine weight"),
+            "{said}"
+        );
         let right = |light: &dyn Fn(&_) -> f64, albedo: f64, rng: &mut _| {
             albedo * light(&Hemisphere::Cosine.sample(rng))
         };
