@@ -135,7 +135,7 @@ const TURNS: [(char, &str, &str, &str); 5] = [
         "let ([a, b], [c, d]) = (rectangle.x_range(), rectangle.y_range());
          let u = rng.uniform();
          rectangle.area() * f(a + (b - a) * u, c + (d - c) * u)",
-        "X",
+        "the same U for x and y",
     ),
     (
         '3',
@@ -145,12 +145,12 @@ const TURNS: [(char, &str, &str, &str); 5] = [
          albedo * light(&Direction::polar(cos_theta, std::f64::consts::TAU * rng.uniform()).unwrap())",
         "uniform directions, the cosine weight",
     ),
-    ('4', PATHS, "// only the directions changed\nPATHS", "uniform directions, the cosine weight"),
+    ('4', PATHS, "// one albedo for all\nPATHS", "p's albedo at every vertex"),
     (
         '5',
         "if rng.uniform() < p_rr { x(rng) / p_rr } else { 0.0 }",
         "if rng.uniform() < p_rr { x(rng) } else { 0.0 }",
-        "not divided",
+        "no compensation",
     ),
 ];
 
@@ -168,7 +168,7 @@ const PATHS: &str = "let (mut vertex, mut throughput, mut light) = (room.point()
 
 /// The cell to be filled in, filled in.
 fn filled(notebook: &Notebook, body: &str) -> String {
-    let body = body.replace("PATHS", &PATHS.replace("Hemisphere::Cosine", "Hemisphere::Uniform"));
+    let body = body.replace("PATHS", &PATHS.replace("room.albedo(&vertex)", "room.albedo(&room.point())"));
     let empty = &notebook.tagged("your-turn").source;
     assert_eq!(empty.matches("f64::NAN").count(), 1, "{empty}");
     let cells = [
@@ -350,7 +350,7 @@ fn the_notebooks_have_their_parts() {
             let allowed = if cell.is("setup") { vec![":dep unbiased = { path = \"..\" }"] } else { vec![] };
             assert_eq!(dependencies, allowed, "{name}, cell {}", cell.id);
             let lines = cell.source.lines().count();
-            assert!(lines <= 14, "{name}, cell {}: {lines} lines", cell.id);
+            assert!(lines <= 16, "{name}, cell {}: {lines} lines", cell.id);
             assert!(cell.is("your-turn") || !cell.outputs.is_empty(), "{name}, cell {} was not run", cell.id);
         }
         for tag in ["your-turn", "check", "timing"] {
