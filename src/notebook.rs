@@ -1,6 +1,6 @@
 //! Values shown as what they are in a Jupyter notebook, with [evcxr](https://github.com/evcxr/evcxr)'s Rust kernel.
 //!
-//! A cell that ends in a [`Figure`], an [`Estimate`], a verdict of [`check`](crate::check), a [`Table`] or a [`Comparison`] shows a picture or HTML, and plain text where the viewer
+//! A cell that ends in a [`Figure`], an [`Estimate`], a verdict of [`check`], a [`Table`] or a [`Comparison`] shows a picture or HTML, and plain text where the viewer
 //! has nothing better: the kernel calls the type's `evcxr_display`. The five notebooks of the worksheet are in `notebooks/`.
 
 use std::fmt::Write as _;
