@@ -6,6 +6,7 @@
 use std::process::ExitCode;
 
 use unbiased::box_room::BoxRoom;
+use unbiased::check::Topic;
 use unbiased::hemisphere::Hemisphere::{Cosine, Uniform};
 use unbiased::paths::{Bounces, FindLight, Paths, reflected};
 use unbiased::workbook::{self, Answer, Options};
@@ -15,12 +16,13 @@ use unbiased::{Estimator, Result, figure};
 pub fn answer(options: &Options) -> Result<Vec<Answer>> {
     let room = BoxRoom::new(options.scene())?;
     let bounces = options.limit("bounces");
-    let exact = [room.one_bounce(), room.two_bounces()]; // after one bounce, and after two
+    let exact = [Some(room.one_bounce()), room.two_bounces()]; // after one bounce, and after two
 
     let mut drawings = Answer::new("4.3", "paths in the room")
         .figure(figure::two_bounces_converging(&room, options.seed)?)
         .figure(figure::occluded_fraction(200_000, options.seed)?)
-        .figure(figure::radiance_by_bounces(&room, options.seed)?);
+        .figure(figure::radiance_by_bounces(&room, options.seed)?)
+        .figure(figure::mistakes(Topic::Paths)?);
     for figure in figure::path_errors(&room, options.seed)? {
         drawings = drawings.figure(figure);
     }
@@ -31,7 +33,13 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
             if let Some(truth) = truth {
                 row = row.truth(truth);
             }
-            if let Some(caution) = caution {
+            if row.estimate().is_some_and(|found| found.mean() == 0.0)
+                && truth.is_some_and(|truth| truth > 0.0)
+            {
+                row = row
+                    .note("No path found the light: an estimate of 0 ± 0 says nothing but that.")
+                    .demonstration();
+            } else if let Some(caution) = caution {
                 row = row.note(format!("Careful: {caution}.")).demonstration();
             }
             answers.push(row.scene(room.scene()).parameter("bounces", bounces));
@@ -49,7 +57,8 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
         if k > 0 {
             let paths = once_less(FindLight::BySampling)?;
             let estimated = reflected(room, Uniform, |p_j, rng| paths.light_from(p_j, rng));
-            add("K-bounce part, L_o(p_j) estimated", &estimated, truth, None)?;
+            let whole = Paths::new(room, Bounces::Exactly(k), Uniform, FindLight::BySampling)?;
+            add("K-bounce part, L_o(p_j) estimated", &estimated, truth, whole.caution())?;
         }
         for (what, directions, light) in [
             ("K-bounce part, light sampled, cosine directions", Cosine, FindLight::BySampling),
@@ -60,7 +69,7 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
             let paths = Paths::new(room, Bounces::Exactly(k), directions, light)?;
             add(what, &paths, truth, paths.caution())?;
         }
-        let all_known = exact.iter().take(k as usize).copied().sum::<Option<f64>>();
+        let all_known = exact.iter().take(k as usize).try_fold(0.0, |sum, part| Some(sum + (*part)?));
         let truth = if k <= 2 { all_known } else { None };
         let paths = Paths::new(room, Bounces::UpTo(k), Cosine, FindLight::BySampling)?;
         add("cumulative", &paths, truth, paths.caution())?;

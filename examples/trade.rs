@@ -7,13 +7,14 @@ use std::process::ExitCode;
 use unbiased::box_room::{BoxRoom, Scene};
 use unbiased::figure;
 use unbiased::hemisphere::Hemisphere::{Cosine, Uniform};
+use unbiased::inversion::Exponential;
 use unbiased::lambertian::{CosinePower, Lambertian, Light};
 use unbiased::paths::{Bounces, FindLight, Paths};
 use unbiased::rectangle::{Family, Genz, Integrand, Rectangle};
 use unbiased::roulette::LightModel;
 use unbiased::trade::{Comparison, Measured, Nature, Rival, Trade};
 use unbiased::workbook::{self, Answer, Appendix, Options, Table};
-use unbiased::{Budget, Result};
+use unbiased::{Budget, Estimator, Result, from_fn};
 
 /// The section, as the options ask.
 pub fn answer(options: &Options) -> Result<Appendix> {
@@ -28,20 +29,24 @@ pub fn answer(options: &Options) -> Result<Appendix> {
     let points = points(trade)?;
     let endings = endings(trade)?;
     let (ways, all) = (ways_to_the_light(trade)?, all_bounces(trade)?);
+    let (logarithms, precisions) = (logarithms(trade)?, precisions(trade)?);
 
-    let mut tables: Vec<Table> = Vec::new();
-    for (a, comparison) in &directions {
-        tables.push(table(format!("3.6: directions under a light cos^a θ, a = {a}"), comparison));
-    }
-    tables.push(points_table(&points));
-    tables
-        .push(table("5.3: roulette against truncation in the model with ρ = 0.8, v = 0.5".into(), &endings));
-    tables.push(table("4.3: the light found by chance or sampled, up to two bounces".into(), &ways));
-    tables.push(table("4.3: all bounces, ended by roulette or cut off".into(), &all));
-
-    let compared = directions.iter().map(|(_, comparison)| ("3.6", comparison));
+    let tables = vec![
+        table("3.6: directions under a light cos^a θ, for each a on their own", &directions),
+        table("1.1: the mean of an exponential, by two logarithms", [&logarithms]),
+        points_table(&points),
+        table("5.3: roulette against truncation in the model with ρ = 0.8, v = 0.5", [&endings]),
+        table("4.3: the light found by chance or sampled, up to two bounces", [&ways]),
+        table("4.3: all bounces, ended by roulette or cut off", [&all]),
+        table(
+            "4.3: one path after the other or many side by side, in double and in single precision",
+            [&precisions],
+        ),
+    ];
+    let compared = directions.iter().map(|comparison| ("3.6", comparison));
     let compared = compared.chain(points.iter().map(|(_, comparison)| ("2.1", comparison)));
     let compared = compared.chain([("5.3", &endings), ("4.3", &ways), ("4.3", &all)]);
+    let compared = compared.chain([("1.1", &logarithms), ("4.3", &precisions)]);
     let records = compared.flat_map(|(question, comparison)| {
         comparison.rivals.iter().map(move |rival| record(question, rival, options.seed))
     });
@@ -62,7 +67,7 @@ pub fn answer(options: &Options) -> Result<Appendix> {
     })
 }
 
-fn directions(a: f64, trade: impl Fn(f64) -> Result<Trade>) -> Result<(f64, Comparison)> {
+fn directions(a: f64, trade: impl Fn(f64) -> Result<Trade>) -> Result<Comparison> {
     let (surface, light) = (Lambertian::new(0.8)?, CosinePower::new(a)?);
     let rivals = [Uniform, Cosine].map(|density| {
         let nature = if light.variance(surface, density).is_finite() {
@@ -70,10 +75,13 @@ fn directions(a: f64, trade: impl Fn(f64) -> Result<Trade>) -> Result<(f64, Comp
         } else {
             Nature::InfiniteVariance
         };
-        Rival::new(format!("{density:?}"), surface.estimator(move |w| light.incoming(w), density))
-            .nature(nature)
+        Rival::new(
+            format!("a = {a}: {density:?}").to_lowercase(),
+            surface.estimator(move |w| light.incoming(w), density),
+        )
+        .nature(nature)
     });
-    Ok((a, trade(light.reflected(surface))?.compare(&rivals)?))
+    trade(light.reflected(surface))?.compare(&rivals)
 }
 
 /// Points in the plane: independent pairs, all pairs, jittered and Sobol, over the test set and Genz's families.
@@ -134,7 +142,7 @@ fn endings(trade: impl Fn(f64) -> Result<Trade>) -> Result<Comparison> {
 
 fn ways_to_the_light(trade: impl Fn(f64) -> Result<Trade>) -> Result<Comparison> {
     let room = BoxRoom::new(Scene::default())?;
-    let truth = room.one_bounce().zip(room.two_bounces()).map_or(f64::NAN, |(one, two)| one + two);
+    let truth = room.one_bounce() + room.two_bounces().unwrap_or(f64::NAN);
     let mut rivals = Vec::new();
     for (name, directions, light) in [
         ("sampled, cosine", Cosine, FindLight::BySampling),
@@ -162,34 +170,35 @@ fn all_bounces(trade: impl Fn(f64) -> Result<Trade>) -> Result<Comparison> {
     trade(reference)?.compare(&rivals)
 }
 
-fn table(caption: String, comparison: &Comparison) -> Table {
-    let places = comparison.ranking();
-    let ranked = places.iter().map(|place| {
-        let remark = match place.rival.nature {
-            Nature::InfiniteVariance => "infinite variance",
-            _ if !place.rival.varies() => "no variance",
-            _ if place.rival.heavy_tail => "a few draws hold the variance",
-            _ if !place.set_apart => "as good as the one above",
-            _ => "",
-        };
-        row(place.rival, format!("{:.3}", place.of_the_best), remark.into())
-    });
-    let biased = comparison.rivals.iter().filter(|rival| rival.nature == Nature::Biased).map(|rival| {
-        let share = 100.0 * rival.bias() / rival.truth;
-        let overtaken = places.first().and_then(|best| rival.overtaken_at(best.rival));
-        let remark = match overtaken {
-            Some([seconds, error]) => {
-                format!(
-                    "bias {share:.2} %; overtaken after {seconds:.1e} s, at {:.2} %",
-                    100.0 * error / rival.truth
-                )
-            }
-            None => format!("bias {share:.2} %"),
-        };
-        row(rival, String::new(), remark)
-    });
+/// The accurate logarithm against the fast one, which is within 1 ulp and goes wide.
+fn logarithms(trade: impl Fn(f64) -> Result<Trade>) -> Result<Comparison> {
+    let exponential = Exponential::new(0.37)?;
+    let rivals = [
+        Rival::new("fast logarithm, many at a time", exponential),
+        Rival::new("ln, one draw at a time", from_fn(move |rng| exponential.draw(rng))),
+        Rival::new(
+            "ln_1p, one draw at a time",
+            from_fn(move |rng| -(-rng.uniform()).ln_1p() / exponential.rate()),
+        ),
+    ];
+    trade(exponential.mean())?.compare(&rivals)
+}
+
+fn precisions(trade: impl Fn(f64) -> Result<Trade>) -> Result<Comparison> {
+    let room = BoxRoom::new(Scene::default())?;
+    let truth = room.one_bounce() + room.two_bounces().unwrap_or(f64::NAN);
+    let paths = Paths::new(room, Bounces::UpTo(2), Cosine, FindLight::BySampling)?;
+    let rivals = [
+        Rival::new("f32, many at a time", paths.in_f32()),
+        Rival::new("f64, many at a time", paths),
+        Rival::new("f64, one path after the other", from_fn(move |rng| paths.draw(rng))),
+    ];
+    trade(truth)?.compare(&rivals)
+}
+
+fn table<'a>(caption: &str, comparisons: impl IntoIterator<Item = &'a Comparison>) -> Table {
     Table {
-        caption,
+        caption: caption.into(),
         columns: vec![
             "estimator",
             "σ/truth",
@@ -202,14 +211,38 @@ fn table(caption: String, comparison: &Comparison) -> Table {
             "to 10⁻⁵",
             "remark",
         ],
-        rows: ranked.chain(biased).collect(),
+        rows: comparisons.into_iter().flat_map(ranked_rows).collect(),
     }
+}
+
+/// The unbiased ones by rank, then the biased.
+fn ranked_rows(comparison: &Comparison) -> Vec<Vec<String>> {
+    let places = comparison.ranking();
+    let ranked = places.iter().map(|place| {
+        let remark = match place.rival.nature {
+            Nature::InfiniteVariance => "infinite variance",
+            _ if !place.rival.varies() => "no variance",
+            _ if place.rival.heavy_tail => "a few draws hold the variance",
+            _ if !place.set_apart => "as good as the one above",
+            _ => "",
+        };
+        row(place.rival, format!("{:.3}", place.of_the_best), remark.into())
+    });
+    let biased = comparison.rivals.iter().filter(|rival| rival.nature == Nature::Biased).map(|rival| {
+        let mut remark = format!("bias {:.2} %", 100.0 * rival.bias() / rival.truth);
+        if let Some([seconds, error]) = places.first().and_then(|best| rival.overtaken_at(best.rival)) {
+            remark += &format!("; overtaken after {seconds:.1e} s, at {:.2} %", 100.0 * error / rival.truth);
+        }
+        row(rival, String::new(), remark)
+    });
+    ranked.chain(biased).collect()
 }
 
 fn row(rival: &Measured, efficiency: String, remark: String) -> Vec<String> {
     let [low, high] = rival.seconds_range;
-    let to = |error| rival.seconds_to(error).map_or("never".to_owned(), |seconds| format!("{seconds:.1e} s"));
-    let time = format!("{:.1} ± {:.1}", 1e9 * rival.seconds, 0.5e9 * (high - low));
+    let to =
+        |error| rival.seconds_to(error).map_or("never".to_owned(), |seconds| format!("{seconds:.1e}\u{a0}s"));
+    let time = format!("{:.1}\u{a0}±\u{a0}{:.1}", 1e9 * rival.seconds, 0.5e9 * (high - low));
     let spread = format!("{:.3}", rival.variance().sqrt() / rival.truth.abs());
     let mut cells = vec![rival.name.clone(), spread, format!("{:.2}", rival.evaluations), time, efficiency];
     cells.extend([1e-2, 1e-3, 1e-4, 1e-5].map(to));
@@ -228,7 +261,7 @@ fn points_table(points: &[(String, Comparison)]) -> Table {
         if let [independent, pairs, jittered_8, jittered_64, sobol_64, sobol_4096] = &comparison.rivals[..] {
             cells.extend([slope(jittered_8, jittered_64), slope(sobol_64, sobol_4096)]);
             let to = |rival: &Measured| {
-                rival.seconds_to(1e-3).map_or("never".into(), |seconds| format!("{seconds:.1e} s"))
+                rival.seconds_to(1e-3).map_or("never".into(), |seconds| format!("{seconds:.1e}\u{a0}s"))
             };
             cells.extend([independent, pairs, jittered_64, sobol_4096].map(to));
         }

@@ -8,11 +8,13 @@
 
 use std::fmt;
 
+use pulp::NullaryFnOnce;
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use crate::error::{Error, Result, require};
 use crate::extended::two_sum;
+use crate::fast::widest;
 
 /// Draws summed in one two-pass sweep: they stay in the first-level cache between the passes.
 pub(crate) const SLICE: usize = 512;
@@ -194,11 +196,7 @@ impl Estimate {
         if draws.iter().all(|draw| *draw == draws[0]) {
             return Self::of_equal(draws[0], count);
         }
-        let n = draws.len() as f64;
-        let sum = total(draws, |x| x, two_sum);
-        let mean = sum.over(n);
-        let square = |x: f64| (x - mean.hi) * (x - mean.hi);
-        let squares = total(draws, square, fast_two_sum).plus(-n * mean.lo * mean.lo);
+        let [sum, squares] = widest(Moments { draws });
         // 2⁻⁹⁰⁰ and 2⁹⁰⁰: far enough inside f64 that no square in the sum was rounded away or overflowed
         if (1.0 / HUGE..=HUGE).contains(&squares.hi) {
             Self { draws: count, sum, sum_exponent: 0, squares, exponent: 0 }
@@ -271,22 +269,59 @@ fn student_t(freedom: f64, tail: f64) -> f64 {
     }
 }
 
-/// The sum of `f` over the draws, in eight interleaved lanes, each with what rounding took from it as `two_sum` finds it.
+/// Their sum, and that of the squares about their mean.
+struct Moments<'a> {
+    draws: &'a [f64],
+}
+
+impl NullaryFnOnce for Moments<'_> {
+    type Output = [Twofold; 2];
+
+    #[inline(always)]
+    fn call(self) -> [Twofold; 2] {
+        let n = self.draws.len() as f64;
+        let sum = total(self.draws, |x| x, two_sum);
+        let mean = sum.over(n);
+        let square = |x: f64| (x - mean.hi) * (x - mean.hi);
+        let squares = total(self.draws, square, fast_two_sum).plus(-n * mean.lo * mean.lo);
+        [sum, squares]
+    }
+}
+
+/// Sums side by side: as many as fill the widest vectors twice.
+const LANES: usize = 16;
+
+/// The sum of `f` over the draws, in interleaved lanes, each with what rounding took from it as `two_sum` finds it.
 #[inline(always)]
 fn total(draws: &[f64], f: impl Fn(f64) -> f64, two_sum: impl Fn(f64, f64) -> (f64, f64)) -> Twofold {
-    let (mut sums, mut lost) = ([0.0; 8], [0.0; 8]);
-    let mut add = |draws: &[f64]| {
-        for ((sum, lost), &draw) in sums.iter_mut().zip(&mut lost).zip(draws) {
-            let (next, error) = two_sum(*sum, f(draw));
-            *sum = next;
-            *lost += error;
+    let (mut sums, mut lost) = ([0.0; LANES], [0.0; LANES]);
+    let (rows, rest) = draws.as_chunks::<LANES>();
+    for row in rows {
+        for lane in 0..LANES {
+            let (sum, error) = two_sum(sums[lane], f(row[lane]));
+            sums[lane] = sum;
+            lost[lane] += error;
         }
-    };
-    let (eights, rest) = draws.as_chunks::<8>();
-    eights.iter().for_each(|eight| add(eight));
-    add(rest);
-    let lanes = sums.into_iter().zip(lost);
-    lanes.fold(Twofold::ZERO, |total, (hi, lo)| total.plus(lo).plus(hi))
+    }
+    for (lane, &draw) in rest.iter().enumerate() {
+        let (sum, error) = two_sum(sums[lane % LANES], f(draw));
+        sums[lane % LANES] = sum;
+        lost[lane % LANES] += error;
+    }
+    in_pairs(sums, lost)
+}
+
+/// The sum of all lanes, in pairs and pairs of pairs: a function of its own, or the compiler would arrange the loop before it in its order.
+#[inline(never)]
+fn in_pairs(mut sums: [f64; LANES], mut lost: [f64; LANES]) -> Twofold {
+    for half in [8, 4, 2, 1] {
+        for lane in 0..half {
+            let (sum, error) = two_sum(sums[lane], sums[lane + half]);
+            sums[lane] = sum;
+            lost[lane] += lost[lane + half] + error;
+        }
+    }
+    Twofold::normal(sums[0], lost[0])
 }
 
 /// [`two_sum`] in half the time where |a| ≥ |b|, and no worse than a plain sum elsewhere (Dekker).

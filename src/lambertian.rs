@@ -8,13 +8,13 @@
 
 use std::f64::consts::PI;
 
-use rand::distr::Distribution;
-
 use crate::density::{Density, ratio};
 use crate::error::{Result, require};
 use crate::extended::Extended;
+use crate::fast::{self, OfPair};
 use crate::hemisphere::{Direction, Hemisphere};
-use crate::run::{Estimator, from_fn};
+use crate::run::Estimator;
+use crate::stream::Stream;
 
 /// A diffuse surface: it reflects the part ρ of the light that falls on it, the same radiance in all directions.
 ///
@@ -95,22 +95,44 @@ impl Lambertian {
 
     /// The estimator 2ρ L_i cos θ of L_r, directions drawn uniformly (worksheet 3.4).
     pub fn uniform_estimator<L: Fn(&Direction) -> f64 + Sync>(self, light: L) -> impl Estimator {
-        from_fn(move |rng| {
-            let direction = Hemisphere::Uniform.sample(rng);
-            rng.count_evaluations(1);
-            2.0 * self.albedo * light(&direction) * direction.cos_theta()
-        })
+        Reflected::<L, false> { albedo: self.albedo, light }
     }
 
     /// The estimator ρ L_i of L_r, directions drawn in proportion to cos θ (worksheet 3.5). The directions must
     /// be *drawn* so: with uniform ones this formula is right under a light that does not depend on θ, such as a
     /// constant one, and wrong under others.
     pub fn cosine_estimator<L: Fn(&Direction) -> f64 + Sync>(self, light: L) -> impl Estimator {
-        from_fn(move |rng| {
-            let direction = Hemisphere::Cosine.sample(rng);
-            rng.count_evaluations(1);
-            self.albedo * light(&direction)
-        })
+        Reflected::<L, true> { albedo: self.albedo, light }
+    }
+}
+
+/// The estimator 2ρ L_i cos θ with uniform directions, or ρ L_i with `COSINE` ones.
+struct Reflected<L, const COSINE: bool> {
+    albedo: f64,
+    light: L,
+}
+
+impl<L: Fn(&Direction) -> f64, const COSINE: bool> OfPair for Reflected<L, COSINE> {
+    #[inline(always)]
+    fn of_pair(&self, u: f64, v: f64) -> f64 {
+        let hemisphere = if COSINE { Hemisphere::Cosine } else { Hemisphere::Uniform };
+        let direction = hemisphere.invert(u, v);
+        let light = (self.light)(&direction);
+        if COSINE { self.albedo * light } else { 2.0 * self.albedo * light * direction.cos_theta() }
+    }
+}
+
+impl<L: Fn(&Direction) -> f64 + Sync, const COSINE: bool> Estimator for Reflected<L, COSINE> {
+    #[inline]
+    fn draw(&self, rng: &mut Stream) -> f64 {
+        let (u, v) = (rng.uniform(), rng.uniform());
+        rng.count_evaluations(1);
+        self.of_pair(u, v)
+    }
+
+    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
+        fast::fill_by_pairs(draws, rng, self);
+        rng.count_evaluations(draws.len() as u64);
     }
 }
 

@@ -37,6 +37,8 @@
 //!
 //! Whether an estimator is unbiased, and which classic mistake it looks like if not, is what [`check`] says; `examples/check_mine.rs` is the place to try one's own.
 //!
+//! What a second of each buys is what [`trade`] measures.
+//!
 //! Underneath lie [`density`](mod@density), [`run`], [`estimate`](mod@estimate), [`stream`] and [`error`]; above, with the feature `workbook` (on by default),
 //! `figure` and `workbook`. The files in `examples/` are the answers to read, one a question.
 //!
@@ -58,6 +60,7 @@ pub mod density;
 pub mod error;
 pub mod estimate;
 mod extended;
+pub mod fast;
 #[cfg(feature = "workbook")]
 pub mod figure;
 pub mod hemisphere;

@@ -35,6 +35,8 @@ use crate::roulette::{Roulette, coin, draws_for};
 use crate::run::{Estimator, from_fn};
 use crate::stream::Stream;
 
+mod wide;
+
 /// How a path finds the light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum FindLight {
@@ -144,6 +146,27 @@ impl Paths {
             }
         };
         Ok(Self { room, counted, ending, directions, light })
+    }
+
+    /// The same paths computed in `f32`, in about half the time, with half the random numbers: speed against accuracy. Draws are summed in `f64` all the same.
+    ///
+    /// Its mean is off by rounding, and by the coarser grid k·2⁻²⁴ of its uniform numbers. In the sheet's scene no such bias was seen: with cosine directions and the light sampled it is 0 ± 7e-7 of
+    /// the light of one bounce in 10⁹ paths, and 0 ± 1.6e-5 of that of up to fifteen in 1.5·10⁸.
+    ///
+    /// ```
+    /// use unbiased::box_room::{BoxRoom, Scene};
+    /// use unbiased::hemisphere::Hemisphere;
+    /// use unbiased::paths::{Bounces, FindLight, Paths};
+    /// use unbiased::{Budget, estimate};
+    ///
+    /// let room = BoxRoom::new(Scene::default())?;
+    /// let once = Paths::new(room, Bounces::Exactly(1), Hemisphere::Cosine, FindLight::BySampling)?;
+    /// let found = estimate(&once.in_f32(), Budget::Draws(100_000), 1)?;
+    /// assert!(found.z(0.2728543591976926).unwrap().abs() < 5.0);
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    pub fn in_f32(self) -> PathsF32 {
+        PathsF32(self)
     }
 
     /// The scene.
@@ -283,8 +306,33 @@ impl Estimator for Paths {
         self.light_from(&self.room.point(), rng)
     }
 
+    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
+        wide::fill::<f64>(self, rng, draws);
+    }
+
     fn draws_per_block(&self) -> u64 {
         draws_for(self.work())
+    }
+}
+
+/// [`Paths`] in single precision; see [`Paths::in_f32`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathsF32(Paths);
+
+impl Estimator for PathsF32 {
+    fn draw(&self, rng: &mut Stream) -> f64 {
+        let mut draws = [0.0];
+        self.fill(rng, &mut draws);
+        let [draw] = draws;
+        draw
+    }
+
+    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
+        wide::fill::<f32>(&self.0, rng, draws);
+    }
+
+    fn draws_per_block(&self) -> u64 {
+        self.0.draws_per_block()
     }
 }
 

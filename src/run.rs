@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Result, require, require_count};
 use crate::estimate::{Estimate, SLICE};
+use crate::fast;
 use crate::stream::{Stream, mix};
 
 /// Something that can be drawn: each draw is one independent, unbiased value of the quantity estimated.
@@ -402,7 +403,9 @@ pub(crate) fn walk_block(
     while done < draws {
         let slice = &mut buffer[..(draws - done).min(SLICE as u64) as usize];
         estimator.fill(&mut rng, slice);
-        if let Some(draw) = slice.iter().position(|draw| !draw.is_finite()) {
+        if !fast::all_finite(slice)
+            && let Some(draw) = slice.iter().position(|draw| !draw.is_finite())
+        {
             return Err(Error::Draw { seed, block, draw: done + draw as u64, value: slice[draw] });
         }
         take(slice)?;

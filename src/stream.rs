@@ -2,8 +2,11 @@
 
 use std::convert::Infallible;
 
+use pulp::NullaryFnOnce;
 use rand::{SeedableRng, TryRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+
+use crate::fast::widest;
 
 /// A stream of random numbers: Xoshiro256++ (Blackman & Vigna 2019), started from (seed, block).
 ///
@@ -33,7 +36,12 @@ pub struct Stream {
 /// What a stream's numbers come from.
 #[derive(Debug, Clone)]
 enum Source {
-    Generator(Xoshiro256PlusPlus),
+    Generator {
+        one: Xoshiro256PlusPlus,
+        seed: u64,
+        block: u64,
+        lanes: Option<Box<Lanes>>,
+    },
     /// These words one after the other, then 0 for ever.
     Script(Vec<u64>),
 }
@@ -42,12 +50,11 @@ impl Stream {
     /// The stream of `block` in the run with `seed`.
     pub fn new(seed: u64, block: u64) -> Self {
         let mut state = [0; 32];
-        for (word, bytes) in state.as_chunks_mut::<8>().0.iter_mut().enumerate() {
-            let salt = GOLDEN.wrapping_mul(word as u64 + 1);
-            let mixed = mix(seed.wrapping_add(salt)).wrapping_add(mix(block ^ !salt));
+        for (bytes, mixed) in state.as_chunks_mut::<8>().0.iter_mut().zip(mixed(seed, block)) {
             *bytes = mix(mixed).to_le_bytes();
         }
-        let source = Source::Generator(Xoshiro256PlusPlus::from_seed(state));
+        let one = Xoshiro256PlusPlus::from_seed(state);
+        let source = Source::Generator { one, seed, block, lanes: None };
         Self { source, random_numbers: 0, evaluations: 0 }
     }
 
@@ -71,16 +78,44 @@ impl Stream {
     /// 1 − u is exact on this grid and lies in (0, 1].
     #[inline]
     pub fn uniform(&mut self) -> f64 {
-        const STEP: f64 = 1.0 / (1u64 << 53) as f64;
-        let Ok(bits) = self.try_next_u64();
-        (bits >> 11) as f64 * STEP
+        on_the_grid(self.next_word())
     }
 
-    /// Fills `uniforms` with what repeated [`uniform`](Self::uniform) would give, faster: the generator's state stays in registers.
+    /// Fills `uniforms` with numbers as [`uniform`](Self::uniform) gives them, but not the same ones, and in a fraction of the time: from sixteen generators side by
+    /// side, each started from (seed, block, its place).
+    ///
+    /// The sixteen take turns; a call begins at the first of them, wherever the one before it ended. A [`scripted`](Self::scripted) stream gives its next numbers.
     pub fn fill_uniform(&mut self, uniforms: &mut [f64]) {
-        for uniform in uniforms {
-            *uniform = self.uniform();
+        match &mut self.source {
+            Source::Generator { seed, block, lanes, .. } => {
+                self.random_numbers = self.random_numbers.wrapping_add(uniforms.len() as u64);
+                let lanes = lanes.get_or_insert_with(|| Box::new(Lanes::new(*seed, *block)));
+                widest(Fill { lanes, uniforms });
+            }
+            Source::Script(_) => uniforms.fill_with(|| self.uniform()),
         }
+    }
+
+    /// Fills `uniforms` with numbers on the grid k·2⁻²⁴, two of each word.
+    pub(crate) fn fill_uniform_pairs(&mut self, uniforms: &mut [f32]) {
+        match &mut self.source {
+            Source::Generator { seed, block, lanes, .. } => {
+                let words = uniforms.len().div_ceil(2) as u64;
+                self.random_numbers = self.random_numbers.wrapping_add(words);
+                let lanes = lanes.get_or_insert_with(|| Box::new(Lanes::new(*seed, *block)));
+                widest(FillPairs { lanes, uniforms });
+            }
+            Source::Script(_) => {
+                // the script's own numbers, rounded down
+                uniforms.fill_with(|| halves(self.next_word())[1]);
+            }
+        }
+    }
+
+    #[inline]
+    fn next_word(&mut self) -> u64 {
+        let Ok(word) = self.try_next_u64();
+        word
     }
 
     /// How many random numbers (words of 64 bits) were given.
@@ -113,7 +148,7 @@ impl TryRng for Stream {
         let index = self.random_numbers;
         self.random_numbers = index.wrapping_add(1);
         match &mut self.source {
-            Source::Generator(rng) => rng.try_next_u64(),
+            Source::Generator { one, .. } => one.try_next_u64(),
             Source::Script(words) => Ok(words.get(index as usize).copied().unwrap_or(0)),
         }
     }
@@ -125,6 +160,130 @@ impl TryRng for Stream {
         }
         Ok(())
     }
+}
+
+/// The upper 53 bits as a number in [0, 1).
+#[inline(always)]
+fn on_the_grid(bits: u64) -> f64 {
+    const STEP: f64 = 1.0 / (1u64 << 53) as f64;
+    (bits >> 11) as f64 * STEP
+}
+
+/// Generators side by side: as many as fill the widest vectors twice, since the steps of one depend on each other.
+const LANES: usize = 16;
+
+/// Xoshiro256++ in every lane.
+#[derive(Debug, Clone)]
+struct Lanes {
+    state: [[u64; LANES]; 4],
+}
+
+impl Lanes {
+    fn new(seed: u64, block: u64) -> Self {
+        let mut state = [[0; LANES]; 4];
+        for ((number, lanes), mixed) in (0u64..).zip(&mut state).zip(mixed(seed, block)) {
+            for (lane, word) in (1u64..).zip(lanes) {
+                // 0 would be the stream's own generator
+                *word = mix(mixed.wrapping_add(mix(GOLDEN.wrapping_mul(4 * lane + number))));
+            }
+        }
+        Self { state }
+    }
+
+    /// The next word of every lane.
+    #[inline(always)]
+    fn next(&mut self) -> [u64; LANES] {
+        let [s0, s1, s2, s3] = &mut self.state;
+        let mut words = [0; LANES];
+        for lane in 0..LANES {
+            words[lane] = s0[lane].wrapping_add(s3[lane]).rotate_left(23).wrapping_add(s0[lane]);
+            let shifted = s1[lane] << 17;
+            s2[lane] ^= s0[lane];
+            s3[lane] ^= s1[lane];
+            s1[lane] ^= s2[lane];
+            s0[lane] ^= s3[lane];
+            s2[lane] ^= shifted;
+            s3[lane] = s3[lane].rotate_left(45);
+        }
+        words
+    }
+}
+
+impl Lanes {
+    /// Both halves of the next word of every lane.
+    #[inline(always)]
+    fn next_pairs(&mut self) -> [f32; 2 * LANES] {
+        let words = self.next();
+        let mut pairs = [0.0; 2 * LANES];
+        for lane in 0..LANES {
+            [pairs[lane], pairs[LANES + lane]] = halves(words[lane]);
+        }
+        pairs
+    }
+}
+
+struct Fill<'a> {
+    lanes: &'a mut Lanes,
+    uniforms: &'a mut [f64],
+}
+
+impl NullaryFnOnce for Fill<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        // a copy, which stays in registers
+        let mut lanes = self.lanes.clone();
+        let (rows, rest) = self.uniforms.as_chunks_mut::<LANES>();
+        for row in rows {
+            *row = lanes.next().map(on_the_grid);
+        }
+        if !rest.is_empty() {
+            for (uniform, word) in rest.iter_mut().zip(lanes.next()) {
+                *uniform = on_the_grid(word);
+            }
+        }
+        *self.lanes = lanes;
+    }
+}
+
+struct FillPairs<'a> {
+    lanes: &'a mut Lanes,
+    uniforms: &'a mut [f32],
+}
+
+impl NullaryFnOnce for FillPairs<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let mut lanes = self.lanes.clone();
+        let (rows, rest) = self.uniforms.as_chunks_mut::<{ 2 * LANES }>();
+        for row in rows {
+            *row = lanes.next_pairs();
+        }
+        if !rest.is_empty() {
+            for (uniform, number) in rest.iter_mut().zip(lanes.next_pairs()) {
+                *uniform = number;
+            }
+        }
+        *self.lanes = lanes;
+    }
+}
+
+/// The lower and the upper half of a word as numbers in [0, 1).
+#[inline(always)]
+fn halves(bits: u64) -> [f32; 2] {
+    const STEP: f32 = 1.0 / (1u32 << 24) as f32;
+    [bits as u32, (bits >> 32) as u32].map(|half| (half >> 8) as i32 as f32 * STEP)
+}
+
+/// Four words out of seed and block, of which a finaliser makes a generator's state.
+fn mixed(seed: u64, block: u64) -> [u64; 4] {
+    [1, 2, 3, 4].map(|word| {
+        let salt = GOLDEN.wrapping_mul(word);
+        mix(seed.wrapping_add(salt)).wrapping_add(mix(block ^ !salt))
+    })
 }
 
 /// 2⁶⁴/φ, the increment of SplitMix64.

@@ -180,14 +180,31 @@ fn drawing_is_the_inverse_cdf_of_the_streams_uniform_number() {
     }
 }
 
+/// The plain form is the test of the wide one: the same uniform numbers, and at most 3 ulp apart (1 of the logarithm, ½ each of 1/λ, product, quotient and library).
 #[test]
-fn filling_gives_the_same_bits_as_drawing() {
-    let exponential = exponential(0.37);
-    let (mut one, mut many) = (Stream::new(common::seed(18), 0), Stream::new(common::seed(18), 0));
-    let mut filled = [0.0; 1000];
-    exponential.fill(&mut many, &mut filled);
-    assert!(filled.iter().all(|draw| draw.to_bits() == exponential.draw(&mut one).to_bits()));
-    assert_eq!(one.random_numbers(), many.random_numbers());
+fn filling_is_drawing_to_rounding() {
+    for rate in [0.37, 1.0, 1e-300, 1e300, 5e-308, 1e308, f64::MIN_POSITIVE, f64::MAX] {
+        let exponential = exponential(rate);
+        let mut uniforms = [0.0; 1003];
+        Stream::new(common::seed(18), 0).fill_uniform(&mut uniforms);
+        let mut many = Stream::new(common::seed(18), 0);
+        let mut filled = [0.0; 1003];
+        exponential.fill(&mut many, &mut filled);
+        let mut one = Stream::scripted(&uniforms);
+        for draw in filled {
+            let plain = exponential.draw(&mut one);
+            let ulp = plain.next_up() - plain;
+            // the smallest rates overflow, in both
+            let same = draw == plain || (draw - plain).abs() <= 3.0 * ulp;
+            assert!(same, "{draw:?} and {plain:?} at rate {rate:?}");
+        }
+        assert_eq!(one.random_numbers(), many.random_numbers());
+    }
+    // at both ends of the grid
+    let mut ends = [0.0; 2];
+    exponential(1.0).fill(&mut Stream::scripted(&[0.0, 1.0]), &mut ends);
+    assert_eq!(ends[0].to_bits(), 0);
+    assert!((ends[1] - 53.0 * std::f64::consts::LN_2).abs() <= 1e-14);
 }
 
 #[test]
@@ -199,7 +216,16 @@ fn a_seeds_samples_are_pinned() {
         let drawn: f64 = exponential.sample(&mut rng);
         assert_relative_eq!(drawn, expected, epsilon = 0.0, max_relative = 4.5e-16);
     }
+    let mut filled = [0.0; 4];
+    exponential.fill(&mut Stream::new(1, 0), &mut filled);
+    for (drawn, expected) in filled.into_iter().zip(PINNED_SIDE_BY_SIDE) {
+        assert_relative_eq!(drawn, expected, epsilon = 0.0, max_relative = 4.5e-16);
+    }
 }
+
+/// By the separate program of tests/run.rs, in arbitrary precision.
+const PINNED_SIDE_BY_SIDE: [f64; 4] =
+    [0.813058194936351, 0.4004263956224661, 0.2573588720619406, 1.0669156347651618];
 
 const PINNED: [f64; 4] = [3.32306113305519359, 2.26802895739305536, 0.747655138316956264, 1.0747805085386809];
 

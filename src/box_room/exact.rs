@@ -1,75 +1,168 @@
-//! The light after one bounce and after two, where it is known exactly.
+//! Light in the box room without random paths: closed forms, and quadrature of closed forms.
+//!
+//! What p sees of the light is a polygon: the light, less what lies below p's horizon, less the cube's shadow, which is convex. From the cube's
+//! top p sees the walls above z = 1 and the ceiling, which see the whole light; the ceiling gets none of it, being in its plane.
 
-use std::f64::consts::{FRAC_1_PI, PI};
+use std::f64::consts::FRAC_1_PI;
+use std::sync::LazyLock;
 
 use glam::DVec3;
 
-use super::BoxRoom;
-use super::face::{Face, Vertex};
+use super::{BoxRoom, Face, Vertex, form_factor};
 
 impl BoxRoom {
-    /// The light of the lamp that leaves p after one bounce, where the cube cannot hide any of it: on the cube itself, and from its height upwards. None elsewhere.
-    pub fn one_bounce(&self) -> Option<f64> {
+    /// The light of the lamp that leaves p after one bounce, with what the cube hides of it taken off: exact everywhere.
+    pub fn one_bounce(&self) -> f64 {
         let p = self.point();
-        let clear = p.face().is_cube() || p.position().z >= Face::CUBE_HEIGHT;
-        clear.then(|| self.direct(&p))
+        self.albedo(&p) * self.scene().radiance * seen(self, &p)
     }
 
     /// The light of the lamp that leaves p after two bounces, where it is known exactly: on the cube's top. None elsewhere.
     ///
     /// p sees the walls above the cube's height, which see the whole light, and the ceiling, which lies in the light's plane and gets none. So it is
     ///
-    /// > L₂ = (ρ/π) Σ ∫ L₁(x) cos θ cos θₓ/r² dA
+    /// > L₂ = (ρ/π) ∫ L₁(x) cos θ dω
     ///
-    /// over these parts of the four walls, with L₁ = [`direct`](Self::direct): smooth, and integrated by the Gauss–Legendre rule to about 1e-12 (1e-9 for
-    /// a light that comes near the walls).
+    /// over the directions to these parts of the four walls, with L₁ = [`direct`](Self::direct): smooth, and integrated by the Gauss–Legendre rule to about 1e-12 (1e-6
+    /// for a light that all but touches the walls).
     pub fn two_bounces(&self) -> Option<f64> {
         let p = self.point();
-        if p.face() != Face::CubeTop {
-            return None;
-        }
-        let nodes = gauss_legendre();
-        let from_wall = |face: Face| -> f64 {
-            let [mut low, high] = face.bounds();
-            low.z = Face::CUBE_HEIGHT;
-            // one of the two is 0
-            let across = DVec3::new(high.x - low.x, high.y - low.y, 0.0);
-            let mut sum = 0.0;
-            for (u, u_weight) in &nodes {
-                for (v, v_weight) in &nodes {
-                    // both ends drawn together with a power: a light near the wall makes its upper edge steep
-                    let (z, slope) = (v * v * (3.0 - 2.0 * v), 6.0 * v * (1.0 - v));
-                    let height = z * (high.z - low.z);
-                    let x = Vertex::new(low + across * *u + DVec3::Z * height, face);
-                    let way = x.position() - p.position();
-                    let cosines = way.z * -x.normal().dot(way);
-                    let r2 = way.length_squared();
-                    sum += u_weight * v_weight * slope * self.direct(&x) * cosines / (r2 * r2);
-                }
-            }
-            sum * across.length() * (high.z - low.z)
-        };
-        let walls = [Face::West, Face::East, Face::South, Face::North];
-        Some(self.albedo(&p) * FRAC_1_PI * walls.into_iter().map(from_wall).sum::<f64>())
+        let on_top = p.face() == Face::CubeTop;
+        on_top.then(|| self.albedo(&p) * FRAC_1_PI * over_the_walls(self, |p_j, w| self.direct(p_j) * w.z))
     }
 }
 
-/// The nodes and weights of the Gauss–Legendre rule of 32 points on [0, 1], by Newton's method from cosines (*Numerical Recipes*, 3rd ed., section 4.6).
-fn gauss_legendre() -> Vec<(f64, f64)> {
-    const POINTS: u32 = 32;
-    let node = |i: u32| {
-        let mut x = (PI * (f64::from(i) + 0.75) / (f64::from(POINTS) + 0.5)).cos();
-        let mut slope = 1.0;
-        for _ in 0..10 {
-            let (mut last, mut now) = (0.0, 1.0);
-            for k in 0..POINTS {
-                let k = f64::from(k);
-                (last, now) = (now, ((2.0 * k + 1.0) * x * now - k * last) / (k + 1.0));
-            }
-            slope = f64::from(POINTS) * (x * now - last) / (x * x - 1.0);
-            x -= now / slope;
-        }
-        (0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope))
-    };
-    (0..POINTS).map(node).collect()
+/// The part of the cosine-weighted hemisphere above a point that the light fills, the cube's shadow taken off.
+pub(crate) fn seen(room: &BoxRoom, vertex: &Vertex) -> f64 {
+    let of = |corners: &[DVec3]| form_factor(corners, vertex.position(), vertex.normal());
+    of(&room.light_corners()) - of(&shadow(room, vertex))
 }
+
+/// ∫ `f` dA over what a point sees of the light, `shadowed` or as if the cube hid nothing.
+pub(crate) fn over_the_light(
+    room: &BoxRoom,
+    vertex: &Vertex,
+    shadowed: bool,
+    f: impl Fn(DVec3) -> f64,
+) -> f64 {
+    let above = |corners: &[DVec3]| {
+        let rise = |y: DVec3| vertex.normal().dot(y - vertex.position());
+        over_polygon(&cut(corners, rise), &f)
+    };
+    above(&room.light_corners()) - if shadowed { above(&shadow(room, vertex)) } else { 0.0 }
+}
+
+/// ∫ `f` dω over the directions from p, on the cube's top, to the walls, whose points f is given, too.
+pub(crate) fn over_the_walls(room: &BoxRoom, f: impl Fn(&Vertex, DVec3) -> f64) -> f64 {
+    let (p, w) = (room.point().position(), Face::ROOM_HALF_WIDTH);
+    let mut sum = 0.0;
+    for (along, across) in [(DVec3::X, DVec3::Y), (DVec3::Y, DVec3::X)] {
+        // cut where φ begins anew
+        let middle = p.dot(along);
+        for (side, [from, to]) in [(-w, [-w, middle]), (-w, [middle, w]), (w, [-w, middle]), (w, [middle, w])]
+        {
+            let corner = |a: f64, z: f64| along * a + across * side + DVec3::Z * z;
+            let (low, high) = (Face::CUBE_HEIGHT, Face::ROOM_HEIGHT);
+            let (a, b, c) = (corner(from, low), corner(to, low), corner(from, high));
+            for [s, ws] in GAUSS.iter() {
+                for [t, wt] in GAUSS.iter() {
+                    let point = a + (b - a) * *s + (c - a) * *t;
+                    let Ok(p_j) = Vertex::at(point.to_array()) else { continue };
+                    let (way, area) = (point - p, (to - from) * (high - low));
+                    let r = way.length();
+                    let solid = area * p_j.normal().dot(-way) / (r * r * r);
+                    sum += ws * wt * solid * f(&p_j, way / r);
+                }
+            }
+        }
+    }
+    sum
+}
+
+/// ∫₀¹ `f`.
+pub(crate) fn over_the_unit(f: impl Fn(f64) -> f64) -> f64 {
+    GAUSS.iter().map(|[x, w]| w * f(*x)).sum()
+}
+
+/// What the cube hides of the light: empty from z = 1 upwards, and from the cube's own sides, where the horizon hides the same.
+fn shadow(room: &BoxRoom, vertex: &Vertex) -> Vec<DVec3> {
+    let (o, c) = (vertex.position(), Face::CUBE_HALF_WIDTH);
+    if o.z >= Face::CUBE_HEIGHT || vertex.face().is_cube() {
+        return Vec::new();
+    }
+    // the cube's section, seen from o, is thrown on to the ceiling at least `scale` times as large
+    let scale = (Face::ROOM_HEIGHT - o.z) / (Face::CUBE_HEIGHT - o.z);
+    let mut hidden = room.light_corners().to_vec();
+    for axis in [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y] {
+        let beyond = o.dot(axis) - c;
+        if beyond > 0.0 {
+            hidden = cut(&hidden, |y| -(y - o).dot(axis) - scale * beyond);
+        }
+    }
+    // and lies between the two vertical planes through o that touch the cube
+    let corners = CORNERS.map(|[x, y]| DVec3::new(c * x, c * y, 0.0));
+    let turn = |a: DVec3, b: DVec3| (a - o).truncate().perp_dot((b - o).truncate());
+    for corner in corners {
+        for sense in [1.0, -1.0] {
+            if corners.iter().all(|other| sense * turn(corner, *other) >= 0.0) {
+                hidden = cut(&hidden, |y| sense * turn(corner, y));
+            }
+        }
+    }
+    hidden
+}
+
+/// What is left of a convex polygon where `side` is not negative; it is linear.
+fn cut(corners: &[DVec3], side: impl Fn(DVec3) -> f64) -> Vec<DVec3> {
+    let mut kept = Vec::with_capacity(corners.len() + 1);
+    for (a, b) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+        let (here, there) = (side(*a), side(*b));
+        if here >= 0.0 {
+            kept.push(*a);
+        }
+        if (here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0) {
+            kept.push(*a + (*b - *a) * (here / (here - there)));
+        }
+    }
+    kept
+}
+
+/// ∫ `f` over a convex polygon, cut into triangles from its first corner.
+fn over_polygon(corners: &[DVec3], f: impl Fn(DVec3) -> f64) -> f64 {
+    let [first, rest @ ..] = corners else { return 0.0 };
+    let mut sum = 0.0;
+    for (b, c) in rest.iter().zip(rest.iter().skip(1)) {
+        let (b, c) = (*b - *first, *c - *first);
+        let area = b.cross(c).length();
+        for [s, ws] in GAUSS.iter() {
+            for [t, wt] in GAUSS.iter() {
+                sum += ws * wt * s * area * f(*first + (b + (c - b) * *t) * *s);
+            }
+        }
+    }
+    sum
+}
+
+const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+
+const NODES: usize = 24;
+
+/// Gauss and Legendre's nodes and weights on [0, 1].
+static GAUSS: LazyLock<[[f64; 2]; NODES]> = LazyLock::new(|| {
+    std::array::from_fn(|i| {
+        let n = NODES as f64;
+        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n + 0.5)).cos();
+        let mut slope = 1.0;
+        // Newton's steps on P_n: six are more than enough
+        for _ in 0..6 {
+            let (mut before, mut value) = (1.0, x);
+            for j in 2..=NODES {
+                let j = j as f64;
+                (before, value) = (value, ((2.0 * j - 1.0) * x * value - (j - 1.0) * before) / j);
+            }
+            slope = n * (x * value - before) / (x * x - 1.0);
+            x -= value / slope;
+        }
+        [0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope)]
+    })
+});

@@ -13,7 +13,7 @@ use glam::DVec3;
 use crate::error::{Result, require};
 use crate::stream::Stream;
 
-mod exact;
+pub(crate) mod exact;
 mod face;
 mod polygon;
 mod ray;
@@ -159,7 +159,8 @@ impl BoxRoom {
     /// The radiance that comes from the light to a point and off it, ρ L_e P with P the light's [`form_factor`], **as if the cube hid nothing**: light
     /// after one bounce, k = 1.
     ///
-    /// It is exact from z = 1 upwards: on the cube's top, and on the walls above its height.
+    /// It does hide some of it from the floor near the cube, where max(|x|, |y|) < (2 + h)/3 for a light of half-width h, and nowhere else;
+    /// [`one_bounce`](Self::one_bounce) takes that off.
     pub fn direct(&self, vertex: &Vertex) -> f64 {
         let seen = form_factor(&self.light_corners(), vertex.position(), vertex.normal());
         self.albedo(vertex) * self.scene.radiance * seen

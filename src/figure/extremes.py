@@ -1,4 +1,5 @@
-"""Makes extremes.csv: u, and -ln(1 - u) and 1 - exp(-u) as sums of two doubles, by mpmath (pip install mpmath).
+"""Makes extremes.csv: u, -ln(1 - u) and 1 - exp(-u), and the nearest u that is a whole number of 2^-53 with -ln(1 - u)
+there; functions as sums of two doubles, by mpmath (pip install mpmath).
 
 python3 src/figure/extremes.py > src/figure/extremes.csv
 """
@@ -14,9 +15,11 @@ def twofold(x):
     return f"{high!r},{float(x - mpf(high))!r}"
 
 
-print("u,log_high,log_low,cdf_high,cdf_low")
+print("u,log_high,log_low,cdf_high,cdf_low,grid,grid_log_high,grid_log_low")
 for i in range(240):
     # even on a logarithmic axis from 1e-18 to 1, with random last digits
     u = 10 ** (-18 + 18 * (i + random.random()) / 240)
     exact = mpf(u)
-    print(f"{u!r},{twofold(-log(1 - exact))},{twofold(1 - exp(-exact))}")
+    grid = max(round(u * 2.0**53), 1) / 2.0**53
+    on_grid = twofold(-log(1 - mpf(grid)))
+    print(f"{u!r},{twofold(-log(1 - exact))},{twofold(1 - exp(-exact))},{grid!r},{on_grid}")

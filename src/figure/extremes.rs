@@ -4,10 +4,11 @@ use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
 use super::{Edition, Figure};
 use crate::error::Result;
 use crate::estimate::Estimate;
+use crate::fast;
 use crate::inversion::Exponential;
 use crate::stream::Stream;
 
-/// u, and −ln(1 − u) and 1 − e^(−u) to 32 digits, by another program; see `extremes.py`.
+/// u, −ln(1 − u) and 1 − e^(−u) to 32 digits, and the nearest u on the grid of 2⁻⁵³ with −ln(1 − u) there, by another program; see `extremes.py`.
 const TRUTHS: &str = include_str!("extremes.csv");
 
 /// A way to write a function, and how it is drawn.
@@ -21,12 +22,15 @@ pub fn errors_in_ulps() -> Result<Figure> {
     let exponential = Exponential::new(1.0)?;
     let mut quantile = ulp_panel("−ln(1 − u)", "u");
     let mut cdf = ulp_panel("1 − exp(−x)", "x");
+    // on the grid, where uniform numbers are, 1 − u is exact
+    let fast = errors(|u| -fast::ln(1.0 - u), |[.., u, high, low]| [u, high, low]);
+    quantile.marks("−ln(1 − u), fast, on the grid", Ink::Green, Marker::Triangle, fast);
     let forms: [Form<'_>; 2] = [
         ("−ln(1 − u)", Ink::Vermilion, Marker::Cross, &|u| -(1.0 - u).ln()),
         ("inverse_cdf, by ln_1p", Ink::Blue, Marker::Dot, &|u| -(-u).ln_1p()),
     ];
     for (label, ink, marker, form) in forms {
-        quantile.marks(label, ink, marker, errors(form, |[_, high, low, _, _]| [high, low]));
+        quantile.marks(label, ink, marker, errors(form, |[u, high, low, ..]| [u, high, low]));
     }
     let forms: [Form<'_>; 3] = [
         ("1 − exp(−x)", Ink::Vermilion, Marker::Cross, &|x| 1.0 - (-x).exp()),
@@ -36,7 +40,7 @@ pub fn errors_in_ulps() -> Result<Figure> {
         ("cdf, by exp_m1", Ink::Blue, Marker::Dot, &|x| exponential.cdf(x)),
     ];
     for (label, ink, marker, form) in forms {
-        cdf.marks(label, ink, marker, errors(form, |[_, _, _, high, low]| [high, low]));
+        cdf.marks(label, ink, marker, errors(form, |[x, _, _, high, low, ..]| [x, high, low]));
     }
     quantile.text(Ink::Vermilion, [1e-8, 1e10], Side::Right, "× −ln(1 − u)").text(
         Ink::Blue,
@@ -44,6 +48,7 @@ pub fn errors_in_ulps() -> Result<Figure> {
         Side::Right,
         "● −ln_1p(−u)",
     );
+    quantile.text(Ink::Green, [1e-17, 250.0], Side::Right, "▲ fast, for u = k·2⁻⁵³");
     cdf.text(Ink::Vermilion, [1e-8, 1e10], Side::Right, "× 1 − exp(−x)")
         .text(Ink::Green, [1e-17, 250.0], Side::Right, "▲ 2 exp(−x/2) sinh(x/2)")
         .text(Ink::Blue, [1e-17, 12.0], Side::Right, "● −exp_m1(−x)");
@@ -51,7 +56,7 @@ pub fn errors_in_ulps() -> Result<Figure> {
         name: "extremes_ulps",
         title: "Near 0 the obvious formulas lose all digits; ln_1p and exp_m1 lose none".into(),
         description: "Errors in units of the last place, logarithmic, against u and x from 1e-18 to 1. −ln(1 − u) and 1 − exp(−x) are off by one part in 1e16 of 1, which for a small argument is all of it: up to 1e16 units of the last place, \
-                      where the result is 0. ln_1p and exp_m1 stay within one everywhere, and so does the product with sinh, within two. Errors below 0.05 are drawn there."
+                      where the result is 0. ln_1p and exp_m1 stay within one everywhere, the fast logarithm does where u is a whole number of 2⁻⁵³, as uniform numbers are, and so does the product with sinh, within two. Errors below 0.05 are drawn there."
             .into(),
         edition: Edition::Solution,
         width: Width::Page,
@@ -71,15 +76,14 @@ fn ulp_panel(heading: &str, argument: &str) -> Panel {
     )
 }
 
-/// The argument and the error of `form` there, in units of the last place of the truth that `of` picks.
-fn errors(form: impl Fn(f64) -> f64, of: impl Fn([f64; 5]) -> [f64; 2]) -> Vec<[f64; 2]> {
+/// The argument and the error of `form` there, in units of the last place of the truth; `of` picks both.
+fn errors(form: impl Fn(f64) -> f64, of: impl Fn([f64; 8]) -> [f64; 3]) -> Vec<[f64; 2]> {
     let rows = TRUTHS.lines().skip(1).filter_map(|line| {
         let fields: Vec<f64> = line.split(',').map(str::parse).collect::<Result<_, _>>().ok()?;
-        <[f64; 5]>::try_from(fields).ok()
+        <[f64; 8]>::try_from(fields).ok()
     });
     rows.map(|row| {
-        let [high, low] = of(row);
-        let [u, ..] = row;
+        let [u, high, low] = of(row);
         let ulp = high.next_up() - high;
         let error = ((form(u) - high) - low).abs() / ulp;
         [u, error.max(0.05)]

@@ -147,7 +147,7 @@ pub fn radiance_by_bounces(room: &BoxRoom, seed: u64) -> Result<Figure> {
     let (mut exact, mut found) = (Vec::new(), Vec::new());
     for k in 1..=8u32 {
         let known = match k {
-            1 => room.one_bounce(),
+            1 => Some(room.one_bounce()),
             2 => room.two_bounces(),
             _ => None,
         };
@@ -163,7 +163,8 @@ pub fn radiance_by_bounces(room: &BoxRoom, seed: u64) -> Result<Figure> {
     }
     let values =
         || exact.iter().map(|[_, y]| *y).chain(found.iter().map(|[_, y, ..]| *y)).filter(|y| *y > 0.0);
-    let (most, least) = (values().fold(1e-9, f64::max), values().fold(f64::INFINITY, f64::min).min(1.0));
+    // in the dark there is nothing to see, but axes need a height
+    let (least, most) = values().fold((1.0, 1.0), |(least, most): (f64, f64), y| (least.min(y), most.max(y)));
     let (low, high) = (10f64.powf(least.log10().floor()), 10f64.powf((2.0 * most).log10().ceil()));
     let mut panel = Panel::new(
         "Light by the number of bounces",
@@ -180,7 +181,7 @@ pub fn radiance_by_bounces(room: &BoxRoom, seed: u64) -> Result<Figure> {
             Ink::Black,
             [k, y],
             Side::Above,
-            &format!("{y:.places$}", places = (1.5 - y.log10()).ceil().clamp(0.0, 6.0) as usize),
+            &format!("{y:.places$}", places = (2.0 - y.log10().floor()).clamp(0.0, 6.0) as usize),
         );
     }
     let top = high / (high / low).powf(0.07);
@@ -267,9 +268,9 @@ pub fn path_errors(room: &BoxRoom, seed: u64) -> Result<Vec<Figure>> {
         // a seed of its own, so that no error is shared with what is measured against it
         Ok(estimate(&paths_of, Budget::Draws(paths), seed ^ 0x5eed)?.mean())
     };
-    let two = match (room.one_bounce(), room.two_bounces()) {
-        (Some(one), Some(two)) => one + two,
-        _ => reference(2, 500_000)?,
+    let two = match room.two_bounces() {
+        Some(two) => room.one_bounce() + two,
+        None => reference(2, 500_000)?,
     };
     let all = reference(32, 300_000)?;
     if !(two > 0.0 && all > 0.0) {
@@ -338,8 +339,8 @@ fn error_figure(
             panel.curve(label, ink, |c| if c >= work { series.rmse(c / work) } else { f64::NAN });
             panel.marks(label, ink, marker, series.measured.iter().map(|[n, rmse]| [n * work, *rmse]));
             if series.bias == 0.0 {
-                let between_points = 362.0;
-                panel.text(ink, [between_points * work, series.rmse(between_points)], side, label);
+                let past_the_points = low * (high / low).powf(0.55);
+                panel.text(ink, [past_the_points, series.rmse(past_the_points / work)], side, label);
             } else {
                 panel.text(ink, [high, 1.3 * series.bias.abs()], Side::Left, label);
             }

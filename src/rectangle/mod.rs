@@ -29,6 +29,7 @@ use rand::distr::{Distribution, StandardUniform};
 
 use crate::density::Density;
 use crate::error::{Result, require};
+use crate::fast::{self, OfPair};
 use crate::run::Estimator;
 use crate::stream::Stream;
 
@@ -126,12 +127,12 @@ impl Rectangle {
     }
 
     /// The point that lies at the fraction (u, v) of width and height.
-    #[inline]
+    #[inline(always)]
     fn at(&self, u: f64, v: f64) -> [f64; 2] {
         [self.x_at(u), self.y_at(v)]
     }
 
-    #[inline]
+    #[inline(always)]
     fn x_at(&self, u: f64) -> f64 {
         let [a, b] = self.x;
         let x = a + u * self.width;
@@ -139,7 +140,7 @@ impl Rectangle {
         if x < b { x } else { b }
     }
 
-    #[inline]
+    #[inline(always)]
     fn y_at(&self, v: f64) -> f64 {
         let [c, d] = self.y;
         let y = c + v * self.height;
@@ -175,12 +176,25 @@ pub struct Independent<F> {
     f: F,
 }
 
+impl<F: Fn(f64, f64) -> f64> OfPair for Independent<F> {
+    #[inline(always)]
+    fn of_pair(&self, u: f64, v: f64) -> f64 {
+        let [x, y] = self.rectangle.at(u, v);
+        self.rectangle.area * (self.f)(x, y)
+    }
+}
+
 impl<F: Fn(f64, f64) -> f64 + Sync> Estimator for Independent<F> {
     #[inline]
     fn draw(&self, rng: &mut Stream) -> f64 {
-        let [x, y] = self.rectangle.sample(rng);
+        let (u, v) = (rng.uniform(), rng.uniform());
         rng.count_evaluations(1);
-        self.rectangle.area * (self.f)(x, y)
+        self.of_pair(u, v)
+    }
+
+    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
+        fast::fill_by_pairs(draws, rng, self);
+        rng.count_evaluations(draws.len() as u64);
     }
 }
 

@@ -6,6 +6,7 @@ use rand::distr::{Distribution, StandardUniform};
 use super::{P_RR, Roulette, draws_for, one_minus_power, power};
 use crate::error::{Result, require};
 use crate::extended::Extended;
+use crate::fast;
 use crate::run::Estimator;
 use crate::stream::Stream;
 
@@ -174,8 +175,7 @@ impl Estimator for BouncesByInversion {
 
     fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
         rng.fill_uniform(draws);
-        for draw in draws {
-            *draw = self.bounces_at(*draw) as f64;
-        }
+        let per_ln = 1.0 / self.ln_p;
+        fast::map(draws, |u| (fast::ln(1.0 - u) * per_ln).abs().floor());
     }
 }

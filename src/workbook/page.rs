@@ -226,7 +226,7 @@ h3 { font-size: 1.05rem; margin-bottom: .3rem; } h4 { font-size: .95rem; margin-
 nav { line-height: 2; } nav a { display: inline-block; padding: 0 .4rem; color: #005a8c; }
 .statement { font-style: italic; }
 .formula { overflow-x: auto; margin: .6rem 0; } math { font-size: 1.1rem; }
-.figures { display: flex; flex-wrap: wrap; gap: 0 1rem; } figure { margin: 1rem 0; max-width: 100%; flex: 0 1 auto; } figure svg { max-width: 100%; height: auto; } figcaption { font-size: .85rem; color: #444; max-width: 85mm; }
+.figures { display: flex; flex-wrap: wrap; gap: 0 1rem; } figure { margin: 1rem 0; max-width: 100%; flex: 0 1 auto; } figure svg { max-width: 100%; height: auto; } caption { text-align: left; font-weight: 600; padding: 1rem 0 .3rem; } figcaption { font-size: .85rem; color: #444; max-width: 85mm; }
 .wide { overflow-x: auto; } table { border-collapse: collapse; font-size: .85rem; }
 th, td { text-align: left; padding: .2rem .6rem .2rem 0; border-bottom: 1px solid #ddd; vertical-align: top; }
 .number { font-variant-numeric: tabular-nums; white-space: nowrap; } sub, sup { line-height: 0; } tr.demonstration td { color: #666; }

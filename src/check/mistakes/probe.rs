@@ -12,7 +12,7 @@ use crate::paths::MOST_BOUNCES;
 use crate::rectangle::Rectangle;
 use crate::roulette::Roulette;
 
-/// A problem of known truth, on which an [`Attempt`] is tried.
+/// A problem of known truth, on which an [`Attempt`](super::Attempt) is tried.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Probe {
     pub(super) setup: Setup,

@@ -10,6 +10,7 @@ use std::fmt;
 use glam::DVec3;
 
 use super::{Attempt, Mistake, Probe, Setup, Words};
+use crate::box_room::exact::{over_the_light, over_the_unit, over_the_walls, seen};
 use crate::box_room::{BoxRoom, Face, Scene, Vertex, nearest, visible};
 use crate::density::Density;
 use crate::hemisphere::{Direction, Hemisphere};
@@ -257,7 +258,7 @@ impl Way {
         };
         let scene = room.scene();
         if scene.light_half_width == 0.0 {
-            let bounce = exact::over_the_unit(|cos| {
+            let bounce = over_the_unit(|cos| {
                 (self.weight)(cos) * if self.directions == Hemisphere::Cosine { 2.0 * cos } else { 1.0 }
             });
             return throughput(k).map_or(0.0, |t| t * bounce.powf(f64::from(k)) * scene.emission);
@@ -269,8 +270,8 @@ impl Way {
         let seen = match k {
             _ if !self.chance => 0.0,
             2 if self.mirror => exact::seen_in_mirrors(room),
-            1 => exact::seen(room, &room.point()),
-            _ => exact::over_the_walls(room, |p_j, w| exact::seen(room, p_j) * w.z * FRAC_1_PI),
+            1 => seen(room, &room.point()),
+            _ => over_the_walls(room, |p_j, w| seen(room, p_j) * w.z * FRAC_1_PI),
         };
         sampled + throughput(k).map_or(0.0, |t| t * scene.radiance * seen)
     }
@@ -283,10 +284,10 @@ impl Way {
         let at = |vertex: &Vertex, y: DVec3| self.sample.value(Seen::of(room, vertex, y));
         let random = |vertex: &Vertex| {
             if matches!(self.sample, Sampled::Rightly) && self.hidden == Hidden::Dark {
-                return PI * exact::seen(room, vertex);
+                return PI * seen(room, vertex);
             }
             let over = |f: &dyn Fn(DVec3) -> f64| {
-                exact::over_the_light(room, vertex, self.hidden != Hidden::Lit, f) / room.light_area()
+                over_the_light(room, vertex, self.hidden != Hidden::Lit, f) / room.light_area()
             };
             let mean = over(&|y| at(vertex, y));
             if self.hidden == Hidden::Redrawn { mean / over(&|_| 1.0) } else { mean }
@@ -299,7 +300,7 @@ impl Way {
         match (k, self.spot) {
             (1, Spot::Middle) => middle(&p),
             (1, _) => random(&p),
-            (2, _) => exact::over_the_walls(room, |p_j, w| {
+            (2, _) => over_the_walls(room, |p_j, w| {
                 let Ok(direction) = Direction::new(w.x, w.y, w.z) else { return 0.0 };
                 let there = match self.spot {
                     Spot::Random => random(p_j),

@@ -1,0 +1,80 @@
+"""The box room in Mitsuba 3, all cores: one JSON object a number of bounces, with the seconds to a relative std error of 1e-4.
+
+usage: python3 mitsuba_box.py VARIANT RENDERS SPP BOUNCES...      VARIANT: llvm_ad_mono or scalar_rgb
+Install: pip install mitsuba numpy; for llvm_ad_mono libLLVM, and DRJIT_LIBLLVM_PATH=<libLLVM.so>.
+The first render of each, which compiles, is left out, and the fastest of the others is taken for the time of all. The film sums in f32: near 1e6 samples a render its mean is off by 1e-4 or so.
+"""
+import json
+import sys
+import time
+
+import mitsuba as mi
+import numpy as np
+
+variant, renders, spp, bounces = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), [int(k) for k in sys.argv[4:]]
+mi.set_variant(variant)
+
+
+def grey(value):
+    return value if "mono" in variant else {"type": "rgb", "value": value}
+
+
+def diffuse(albedo):
+    return {"type": "diffuse", "reflectance": grey(albedo)}
+
+
+def face(centre, normal, side, bsdf, **extra):
+    up = [0, 1, 0] if abs(normal[2]) > 0.5 else [0, 0, 1]
+    target = [c + n for c, n in zip(centre, normal)]
+    place = mi.ScalarTransform4f().look_at(origin=centre, target=target, up=up)
+    shape = place @ mi.ScalarTransform4f().scale([side / 2, side / 2, 1])
+    return {"type": "rectangle", "to_world": shape, "bsdf": bsdf, **extra}
+
+
+def scene(most):
+    wall, cube = diffuse(0.5), diffuse(0.8)
+    faces = {
+        "west": face([-2, 0, 2], [1, 0, 0], 4, wall),
+        "east": face([2, 0, 2], [-1, 0, 0], 4, wall),
+        "south": face([0, -2, 2], [0, 1, 0], 4, wall),
+        "north": face([0, 2, 2], [0, -1, 0], 4, wall),
+        "floor": face([0, 0, 0], [0, 0, 1], 4, wall),
+        "ceiling": face([0, 0, 4], [0, 0, -1], 4, wall),
+        "top": face([0, 0, 1], [0, 0, 1], 1, cube),
+        "cube_west": face([-0.5, 0, 0.5], [-1, 0, 0], 1, cube),
+        "cube_east": face([0.5, 0, 0.5], [1, 0, 0], 1, cube),
+        "cube_south": face([0, -0.5, 0.5], [0, -1, 0], 1, cube),
+        "cube_north": face([0, 0.5, 0.5], [0, 1, 0], 1, cube),
+    }
+    light = {"type": "area", "radiance": grey(10.0)}
+    film = {"type": "hdrfilm", "width": 1, "height": 1, "rfilter": {"type": "box"}, "pixel_format": "luminance"}
+    return mi.load_dict({
+        "type": "scene",
+        "integrator": {"type": "path", "max_depth": most + 1, "rr_depth": 1000},
+        "light": face([0, 0, 3.99999], [0, 0, -1], 1, diffuse(0.0), emitter=light),
+        "eye": {
+            "type": "radiancemeter",
+            "origin": [0.3, 0.2, 1.9],
+            "direction": [-0.3, -0.2, -0.9],
+            "film": film,
+            "sampler": {"type": "independent", "sample_count": spp},
+        },
+        **faces,
+    })
+
+
+for most in bounces:
+    room, values, best = scene(most), [], float("inf")
+    for seed in range(renders + 1):
+        start = time.perf_counter()
+        value = float(np.array(mi.render(room, spp=spp, seed=seed)).ravel()[0])
+        if seed:
+            best = min(best, time.perf_counter() - start)
+            values.append(value)
+    mean, error = float(np.mean(values)), float(np.std(values, ddof=1) / np.sqrt(len(values)))
+    print(json.dumps({
+        "bounces": most,
+        "mean": mean,
+        "paths_per_second": spp / best,
+        "seconds": renders * best * (error / mean / 1e-4) ** 2,
+    }), flush=True)

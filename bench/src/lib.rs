@@ -1,0 +1,43 @@
+//! What the benchmarks share: draws many at a time, and summed.
+
+use unbiased::{Estimator, Stream};
+
+/// Draws that stay in the first-level cache, as in a run.
+pub const SLICE: usize = 512;
+
+/// Sums `slices` slices of draws by `fill`: a bare loop.
+#[inline(never)]
+pub fn sum_of_filled(estimator: &(impl Estimator + ?Sized), rng: &mut Stream, slices: usize) -> f64 {
+    let mut draws = [0.0; SLICE];
+    let mut sums = [0.0; 16];
+    for _ in 0..slices {
+        estimator.fill(rng, &mut draws);
+        for row in draws.as_chunks::<16>().0 {
+            for (sum, draw) in sums.iter_mut().zip(row) {
+                *sum += draw;
+            }
+        }
+    }
+    sums.iter().sum()
+}
+
+/// The same by one draw after another.
+#[inline(never)]
+pub fn sum_of_drawn(estimator: &(impl Estimator + ?Sized), rng: &mut Stream, slices: usize) -> f64 {
+    (0..slices * SLICE).map(|_| estimator.draw(rng)).sum()
+}
+
+/// As many uniform numbers as an estimator takes for each draw, and nothing else.
+pub struct Uniforms(pub usize);
+
+impl Estimator for Uniforms {
+    fn draw(&self, rng: &mut Stream) -> f64 {
+        (0..self.0).map(|_| rng.uniform()).sum()
+    }
+
+    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
+        for _ in 0..self.0 {
+            rng.fill_uniform(draws);
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! One run of everything, peers too, and the table of ratios: `bench/run`.
+//!
+//! Ours and the peers' turns alternate, and each row takes the best of all turns: others may use the machine at the same time.
+
+use std::collections::BTreeMap;
+use std::hint::black_box;
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+
+use rand::SeedableRng;
+use rand_distr::{Distribution, Exp1};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use unbiased::box_room::{BoxRoom, Scene};
+use unbiased::fast;
+use unbiased::hemisphere::Hemisphere;
+use unbiased::inversion::Exponential;
+use unbiased::lambertian::Lambertian;
+use unbiased::paths::{Bounces, FindLight, Paths};
+use unbiased::rectangle::Rectangle;
+use unbiased::roulette::Roulette;
+use unbiased::{Budget, Estimator, Run, Stream, from_fn};
+use unbiased_bench::{SLICE, Uniforms, sum_of_drawn, sum_of_filled};
+
+const SLICES: usize = 128;
+const TURNS: usize = 3;
+const BOUNCES: [u32; 4] = [1, 2, 3, 15];
+
+/// The best time of each row so far, in ns a draw.
+#[derive(Default)]
+struct Best(BTreeMap<String, f64>);
+
+impl Best {
+    fn take(&mut self, row: &str, ns: f64) {
+        let best = self.0.entry(row.into()).or_insert(f64::INFINITY);
+        *best = best.min(ns);
+    }
+
+    fn time(&mut self, row: &str, draws: usize, mut run: impl FnMut() -> f64) {
+        for _ in 0..60 {
+            let start = Instant::now();
+            black_box(run());
+            self.take(row, start.elapsed().as_secs_f64() * 1e9 / draws as f64);
+        }
+    }
+
+    fn ratio(&self, above: &str, below: &str) -> Option<f64> {
+        Some(self.0.get(above)? / self.0.get(below)?)
+    }
+}
+
+fn ours(best: &mut Best) {
+    let mut rng = Stream::new(1, 0);
+    let draws = SLICES * SLICE;
+    let exponential = Exponential::new(black_box(1.0)).unwrap();
+    let cube = Lambertian::new(black_box(0.8)).unwrap();
+    let bell = Rectangle::WORKSHEET.independent(|x, y| fast::exp(-x * x - y * y));
+    let cosine = cube.cosine_estimator(|direction| 1.0 + direction.vector().x);
+    let uniform = cube.uniform_estimator(|direction| 1.0 + direction.vector().x);
+    let bounces = Roulette::new(black_box(0.8)).unwrap().bounces_by_inversion().unwrap();
+    let rows: [(&str, &dyn Estimator); 7] = [
+        ("one uniform", &Uniforms(1)),
+        ("two uniforms", &Uniforms(2)),
+        ("exponential", &exponential),
+        ("square", &bell),
+        ("cosine", &cosine),
+        ("uniform directions", &uniform),
+        ("bounces", &bounces),
+    ];
+    for (name, estimator) in rows {
+        best.time(&format!("ours: {name}"), draws, || sum_of_filled(estimator, &mut rng, SLICES));
+    }
+    let mut plain = Xoshiro256PlusPlus::seed_from_u64(1);
+    best.time("rand_distr: exponential", draws, || {
+        (0..draws).map(|_| -> f64 { Exp1.sample(&mut plain) }).sum()
+    });
+    // the cost of a run: beside its own draws, filled and summed, and beside a loop over draws
+    let one_by_one = from_fn(move |rng| exponential.draw(rng));
+    best.time("estimate: filled", draws, || {
+        Run::new(1).threads(1).estimate(&exponential, Budget::Draws(draws as u64)).unwrap().estimate.mean()
+    });
+    best.time("estimate: drawn", draws, || {
+        Run::new(1).threads(1).estimate(&one_by_one, Budget::Draws(draws as u64)).unwrap().estimate.mean()
+    });
+    best.time("ours: exponential, drawn", draws, || sum_of_drawn(&one_by_one, &mut rng, SLICES));
+    for threads in [1, 2] {
+        let many = 1 << 24;
+        for _ in 0..3 {
+            let start = Instant::now();
+            black_box(Run::new(1).threads(threads).estimate(&exponential, Budget::Draws(many)).unwrap());
+            best.take(&format!("{threads} threads"), start.elapsed().as_secs_f64() * 1e9 / many as f64);
+        }
+    }
+    let room = BoxRoom::new(Scene::default()).unwrap();
+    for most in BOUNCES {
+        let paths = Paths::new(room, Bounces::UpTo(most), Hemisphere::Cosine, FindLight::BySampling).unwrap();
+        let single = paths.in_f32();
+        let estimators: [(&str, &dyn Estimator); 2] = [("f64", &paths), ("f32", &single)];
+        for (name, estimator) in estimators {
+            for _ in 0..8 {
+                let start = Instant::now();
+                let found = Run::new(1).estimate(estimator, Budget::Draws(1 << 20)).unwrap().estimate;
+                let relative = found.std_error().unwrap() / found.mean() / 1e-4;
+                let seconds = start.elapsed().as_secs_f64() * relative * relative;
+                best.take(&format!("{name}: {most} bounces"), seconds);
+            }
+        }
+    }
+}
+
+/// Takes the rows that a peer prints, or says why there are none.
+fn peer(
+    best: &mut Best,
+    script: &str,
+    arguments: &[&str],
+    mut row: impl FnMut(&mut Best, &serde_json::Value),
+) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers").join(script);
+    let output = match Command::new("python3").arg(path).args(arguments).output() {
+        Ok(output) => output,
+        Err(error) => return println!("{script}: python3 could not be started ({error}); skipped"),
+    };
+    for line in String::from_utf8_lossy(&output.stdout).lines() {
+        if let Ok(value) = serde_json::from_str(line) {
+            row(best, &value);
+        }
+    }
+    if !output.status.success() {
+        let errors = String::from_utf8_lossy(&output.stderr);
+        let reason = errors.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("no reason given");
+        println!("{script}: not all of it ran; skipped ({reason})");
+    }
+}
+
+fn main() {
+    let mut best = Best::default();
+    for turn in 1..=TURNS {
+        eprintln!("turn {turn} of {TURNS}");
+        ours(&mut best);
+        peer(&mut best, "numpy_draws.py", &["65536"], |best, value| {
+            if let (Some(row), Some(ns)) = (value["row"].as_str(), value["ns"].as_f64()) {
+                best.take(&format!("numpy: {row}"), ns);
+            }
+        });
+        let arguments = ["llvm_ad_mono", "12", "1000000", "1", "2", "3", "15"];
+        peer(&mut best, "mitsuba_box.py", &arguments, |best, value| {
+            if let (Some(bounces), Some(seconds)) = (value["bounces"].as_u64(), value["seconds"].as_f64()) {
+                best.take(&format!("mitsuba: {bounces} bounces"), seconds);
+            }
+        });
+    }
+    for (row, time) in &best.0 {
+        let unit = if row.starts_with(['f', 'm']) { "s to 1e-4" } else { "ns a draw" };
+        println!("{row:32} {time:12.6} {unit}");
+    }
+    println!("\n| what | required | goal | measured |\n|---|---|---|---|");
+    let print = |what: &str, required: &str, goal: &str, ratio: Option<f64>| {
+        let ratio = ratio.map_or("no peer".into(), |ratio| format!("{ratio:.2}"));
+        println!("| {what} | {required} | {goal} | {ratio} |");
+    };
+    print(
+        "exponential, its time over rand_distr's ziggurat",
+        "≤ 1.5",
+        "≤ 0.6",
+        best.ratio("ours: exponential", "rand_distr: exponential"),
+    );
+    let numpy = ["numpy: exponential, log1p", "numpy: exponential, log"]
+        .into_iter()
+        .filter_map(|row| best.ratio(row, "ours: exponential"))
+        .reduce(f64::min);
+    print("exponential, numpy's better inversion over ours", "≥ 1.5", "≥ 3", numpy);
+    for row in ["square", "cosine", "uniform directions", "bounces"] {
+        let ratio = best.ratio(&format!("numpy: {row}"), &format!("ours: {row}"));
+        print(&format!("{row}, numpy's time over ours"), "≥ 3", "≥ 8", ratio);
+    }
+    for (row, uniforms) in [
+        ("exponential", "one uniform"),
+        ("bounces", "one uniform"),
+        ("square", "two uniforms"),
+        ("cosine", "two uniforms"),
+        ("uniform directions", "two uniforms"),
+    ] {
+        let ratio = best.ratio(&format!("ours: {row}"), &format!("ours: {uniforms}"));
+        print(&format!("{row}, its time over its uniforms'"), "≤ 6", "≤ 3", ratio);
+    }
+    print("two threads against one", "≥ 1.8", "≥ 1.95", best.ratio("1 threads", "2 threads"));
+    for most in BOUNCES {
+        for precision in ["f64", "f32"] {
+            let ratio =
+                best.ratio(&format!("mitsuba: {most} bounces"), &format!("{precision}: {most} bounces"));
+            print(
+                &format!("paths of {most} bounces in {precision}, Mitsuba's seconds over ours"),
+                "≥ 10",
+                "≥ 25",
+                ratio,
+            );
+        }
+    }
+    print(
+        "estimate, over a loop that draws and sums",
+        "≤ 1.1",
+        "≤ 1.02",
+        best.ratio("estimate: drawn", "ours: exponential, drawn"),
+    );
+    print(
+        "estimate, over a loop that fills and sums",
+        "≤ 1.1",
+        "≤ 1.02",
+        best.ratio("estimate: filled", "ours: exponential"),
+    );
+}

@@ -1,0 +1,185 @@
+//! Functions and loops that go wide: plain sums, products and selections, which the compiler turns into vector instructions.
+//!
+//! [`ln`], [`exp`] and [`sin_cos_of_turns`] are what drawing needs of a mathematical library, within 2 units of the last place and without a branch or a call, so
+//! that a loop over them is vectorised. The crate's own loops are compiled for each of a processor's instruction sets and chosen as the program runs; nothing has to be asked
+//! of the compiler. An integrand or a light of one's own goes wide in the same way if nothing but arithmetic and these functions is in it.
+//!
+//! # The same bits
+//! A sum or a product is rounded alike in every instruction set, and none is fused unless the source says so. So these functions and everything
+//! that is drawn with them have the same bits on every machine with IEEE 754 arithmetic, which `std`'s `ln`, `exp` and `sin` do not promise.
+
+use pulp::{Arch, NullaryFnOnce};
+
+use crate::stream::Stream;
+
+mod exp;
+mod ln;
+mod real;
+mod turns;
+
+pub use exp::exp;
+pub use ln::ln;
+pub(crate) use real::Real;
+pub use turns::sin_cos_of_turns;
+
+/// Runs a loop, compiled for the widest vectors that this processor has.
+///
+/// `kernel`'s `call` has to be `#[inline(always)]`, and what it calls inlined into it, or it stays as narrow as the rest of the crate.
+#[inline]
+pub(crate) fn widest<K: NullaryFnOnce>(kernel: K) -> K::Output {
+    #[cfg(test)]
+    if tests::NARROW.get() {
+        return kernel.call();
+    }
+    Arch::new().dispatch(kernel)
+}
+
+/// `f` of every number of a slice, in place.
+#[inline]
+pub(crate) fn map<F: Fn(f64) -> f64>(numbers: &mut [f64], f: F) {
+    widest(Map { numbers, f });
+}
+
+/// Whether no number is NaN or infinite.
+#[inline]
+pub(crate) fn all_finite(numbers: &[f64]) -> bool {
+    widest(AllFinite(numbers))
+}
+
+struct AllFinite<'a>(&'a [f64]);
+
+impl NullaryFnOnce for AllFinite<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        // without a way out before the end, which would keep the loop narrow
+        self.0.iter().fold(true, |finite, number| finite & number.is_finite())
+    }
+}
+
+/// What a draw is, given two uniform numbers; `of_pair` has to be `#[inline(always)]`.
+pub(crate) trait OfPair {
+    fn of_pair(&self, u: f64, v: f64) -> f64;
+}
+
+/// Fills `draws`, each from two uniform numbers of its own.
+#[inline]
+pub(crate) fn fill_by_pairs<F: OfPair>(draws: &mut [f64], rng: &mut Stream, f: &F) {
+    let (mut u, mut v) = ([0.0; PAIRS], [0.0; PAIRS]);
+    for draws in draws.chunks_mut(PAIRS) {
+        for numbers in [&mut u, &mut v] {
+            rng.fill_uniform(&mut numbers[..draws.len()]);
+        }
+        widest(Pairs { u: &u, v: &v, draws, f });
+    }
+}
+
+/// Pairs of uniform numbers that wait in the first-level cache.
+const PAIRS: usize = 256;
+
+struct Pairs<'a, F> {
+    u: &'a [f64; PAIRS],
+    v: &'a [f64; PAIRS],
+    draws: &'a mut [f64],
+    f: &'a F,
+}
+
+impl<F: OfPair> NullaryFnOnce for Pairs<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        // an array that nothing else can refer to: a store into `draws` might change what `f` holds, for all that the compiler knows
+        let mut values = [0.0; PAIRS];
+        let count = self.draws.len().min(PAIRS);
+        for ((value, u), v) in values[..count].iter_mut().zip(self.u).zip(self.v) {
+            *value = self.f.of_pair(*u, *v);
+        }
+        self.draws.copy_from_slice(&values[..count]);
+    }
+}
+
+struct Map<'a, F> {
+    numbers: &'a mut [f64],
+    f: F,
+}
+
+impl<F: Fn(f64) -> f64> NullaryFnOnce for Map<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for number in self.numbers {
+            *number = (self.f)(*number);
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+    use crate::inversion::Exponential;
+    use crate::lambertian::Lambertian;
+    use crate::rectangle::{Integrand, Rectangle};
+    use crate::roulette::Roulette;
+    use crate::{Estimate, Estimator};
+
+    thread_local! {
+        /// Whether this thread runs its loops without vectors wider than all processors have.
+        pub(crate) static NARROW: Cell<bool> = const { Cell::new(false) };
+    }
+
+    /// The same computation with the processor's widest vectors, and without.
+    pub(crate) fn both<T>(compute: impl Fn() -> T) -> [T; 2] {
+        let wide = compute();
+        NARROW.set(true);
+        let narrow = compute();
+        NARROW.set(false);
+        [wide, narrow]
+    }
+
+    /// The same bits with vectors and without, for every estimator that is filled many at a time, and for their sums.
+    #[test]
+    fn wide_and_narrow_loops_have_the_same_bits() {
+        let square = Rectangle::WORKSHEET;
+        let cube = Lambertian::new(0.8).unwrap();
+        let bounces = Roulette::new(0.83).unwrap().bounces_by_inversion().unwrap();
+        let estimators: [Box<dyn Estimator>; 7] = [
+            Box::new(Exponential::new(0.37).unwrap()),
+            Box::new(Exponential::new(1e-320).unwrap()),
+            Box::new(bounces),
+            Box::new(square.independent(|x, y| Integrand::Gaussian.at(x, y))),
+            Box::new(square.independent(|x, y| Integrand::Disc.at(x, y))),
+            Box::new(cube.cosine_estimator(|direction| 1.0 + direction.vector().x)),
+            Box::new(cube.uniform_estimator(|direction| 1.0 + direction.vector().x)),
+        ];
+        for (seed, estimator) in (0..).zip(&estimators) {
+            for count in [1, 15, 512, 1003] {
+                let [wide, narrow] = both(|| {
+                    let (mut rng, mut draws) = (Stream::new(seed, 3), vec![0.0; count]);
+                    estimator.fill(&mut rng, &mut draws);
+                    let bits: Vec<u64> = draws.iter().map(|draw| draw.to_bits()).collect();
+                    (bits, format!("{:?}", Estimate::from_draws(&draws)), rng.random_numbers())
+                });
+                assert_eq!(wide, narrow, "estimator {seed}, {count} draws");
+            }
+        }
+    }
+
+    #[test]
+    fn a_number_that_is_not_finite_is_found_anywhere() {
+        for count in [1, 7, 64, 512] {
+            assert!(all_finite(&vec![f64::MAX; count]));
+            for place in 0..count {
+                for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                    let mut numbers = vec![1.0; count];
+                    numbers[place] = bad;
+                    assert!(!all_finite(&numbers));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! What a loop that is written once needs of `f64` and of `f32`.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::sin_cos_of_turns;
+use crate::stream::Stream;
+
+/// `f64` or `f32`.
+pub(crate) trait Real:
+    Copy
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// The uniform numbers k·2⁻ⁿ of one word have this step: 2⁻⁵³, or 2⁻²⁴ for each of two.
+    const STEP: Self;
+
+    /// The least component of a direction: the product of three of them has an inverse.
+    const FLAT: Self;
+
+    /// The nearest number.
+    fn of(x: f64) -> Self;
+
+    fn to_f64(self) -> f64;
+
+    fn sqrt(self) -> Self;
+
+    fn abs(self) -> Self;
+
+    fn ceil(self) -> Self;
+
+    fn sin_cos_of_turns(self) -> (Self, Self);
+
+    /// Fills `uniforms` with uniform numbers.
+    fn fill(uniforms: &mut [Self], rng: &mut Stream);
+
+    #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+
+    #[inline(always)]
+    fn most(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+}
+
+impl Real for f64 {
+    const STEP: Self = 1.0 / (1u64 << 53) as Self;
+    const FLAT: Self = 1e-100;
+
+    #[inline(always)]
+    fn of(x: f64) -> Self {
+        x
+    }
+
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+
+    #[inline(always)]
+    fn ceil(self) -> Self {
+        f64::ceil(self)
+    }
+
+    #[inline(always)]
+    fn sin_cos_of_turns(self) -> (Self, Self) {
+        sin_cos_of_turns(self)
+    }
+
+    #[inline]
+    fn fill(uniforms: &mut [Self], rng: &mut Stream) {
+        rng.fill_uniform(uniforms);
+    }
+}
+
+impl Real for f32 {
+    const STEP: Self = 1.0 / (1u32 << 24) as Self;
+    const FLAT: Self = 1e-12;
+
+    #[inline(always)]
+    fn of(x: f64) -> Self {
+        x as Self
+    }
+
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f32::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f32::abs(self)
+    }
+
+    #[inline(always)]
+    fn ceil(self) -> Self {
+        f32::ceil(self)
+    }
+
+    /// The series of [`sin_cos_of_turns`](super::sin_cos_of_turns) with four terms each: the first one left out is below 2⁻²⁴.
+    #[inline(always)]
+    fn sin_cos_of_turns(self) -> (Self, Self) {
+        const MAGIC: f32 = 12_582_912.0; // 1.5·2²³
+        let rounded = 4.0 * self + MAGIC;
+        let quarters = rounded.to_bits();
+        let t = std::f32::consts::TAU * (self - 0.25 * (rounded - MAGIC));
+        let t2 = t * t;
+        let sin =
+            t + t * t2 * (-1.0 / 6.0 + t2 * (1.0 / 120.0 + t2 * (-1.0 / 5_040.0 + t2 * (1.0 / 362_880.0))));
+        let cos = 1.0 + t2 * (-0.5 + t2 * (1.0 / 24.0 + t2 * (-1.0 / 720.0 + t2 * (1.0 / 40_320.0))));
+        let (sin, cos) = if quarters & 1 == 0 { (sin, cos) } else { (cos, sin) };
+        let sign = |negative: u32, x: f32| f32::from_bits(x.to_bits() ^ ((negative & 2) << 30));
+        (sign(quarters, sin), sign(quarters.wrapping_add(1), cos))
+    }
+
+    #[inline]
+    fn fill(uniforms: &mut [Self], rng: &mut Stream) {
+        rng.fill_uniform_pairs(uniforms);
+    }
+}
