@@ -51,6 +51,7 @@
 //! # Features
 //!
 //! - `workbook` (default): figures as SVG and CSV, the examples' command line, the page.
+//! - `notebook` (default): figures, estimates and verdicts show as pictures and HTML in Jupyter.
 //! - `png`, `pdf`: figures in those formats, too.
 
 pub mod box_room;
@@ -65,6 +66,8 @@ pub mod figure;
 pub mod hemisphere;
 pub mod inversion;
 pub mod lambertian;
+#[cfg(feature = "notebook")]
+pub mod notebook;
 pub mod paths;
 pub mod rectangle;
 pub mod roulette;

@@ -33,7 +33,7 @@ pub struct Table {
 
 impl Table {
     /// The table in lines of plain text, columns aligned.
-    pub(super) fn lines(&self) -> Vec<String> {
+    pub(crate) fn lines(&self) -> Vec<String> {
         let heading = self.columns.iter().map(|name| (*name).to_owned()).collect();
         let all: Vec<&Vec<String>> = std::iter::once(&heading).chain(&self.rows).collect();
         let width = |column: usize| {

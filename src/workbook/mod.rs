@@ -38,6 +38,9 @@ pub use check_mine::check_mine;
 pub use options::Options;
 pub use value::Value;
 
+#[cfg(feature = "notebook")]
+pub(crate) use print::shortened;
+
 use crate::error::{Error, Result};
 use crate::figure::{Edition, write_whole};
 use options::Request;

@@ -228,7 +228,7 @@ pub(super) fn interval(answer: &Answer) -> String {
 }
 
 /// Twelve significant digits at most, trailing zeros left out.
-pub(super) fn shortened(value: f64) -> String {
+pub(crate) fn shortened(value: f64) -> String {
     let rounded = format!("{value:.11e}").parse().unwrap_or(value);
     if rounded == 0.0 || (1e-6..1e12).contains(&f64::abs(rounded)) {
         format!("{rounded}")

@@ -1,0 +1,437 @@
+//! Values shown as what they are in a Jupyter notebook, with [evcxr](https://github.com/evcxr/evcxr)'s Rust kernel.
+//!
+//! A cell that ends in a [`Figure`], an [`Estimate`], a verdict of [`check`], a [`Table`] or a [`Comparison`] shows a picture or HTML, and plain text where the viewer
+//! has nothing better: the kernel calls the type's `evcxr_display`. The five notebooks of the worksheet are in `notebooks/`.
+
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
+
+use maud::{Markup, html};
+pub use rand::distr::Distribution;
+
+use crate::check::{self, Agreement, Attempt, Diagnosis, Exact, Finding, Judgement, Report, Topic, Verdict};
+use crate::error::{Error, Result};
+use crate::estimate::Estimate;
+use crate::figure::Figure;
+use crate::run::Outcome;
+use crate::trade::{Comparison, Measured, Nature};
+use crate::workbook::Table;
+
+/// How a value looks in a notebook.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Shown {
+    plain: String,
+    rich: Option<(&'static str, String)>,
+}
+
+impl Shown {
+    fn html(plain: String, markup: Markup) -> Self {
+        Self { plain, rich: Some(("text/html", markup.into_string())) }
+    }
+
+    /// A sentence, with a mark in front that says whether it is good news.
+    fn verdict(good: Option<bool>, sentence: &str) -> Self {
+        Self::html(sentence.into(), said(good, sentence))
+    }
+
+    /// As plain text, for viewers that show nothing else.
+    pub fn plain(&self) -> &str {
+        &self.plain
+    }
+
+    /// The media type and content of the picture or HTML, where there is one.
+    pub fn rich(&self) -> Option<(&'static str, &str)> {
+        self.rich.as_ref().map(|(kind, content)| (*kind, content.as_str()))
+    }
+
+    /// Writes it to standard output between the lines by which the kernel knows it.
+    fn print(&self) {
+        let mut out = String::new();
+        let rich = self.rich.as_ref().map(|(kind, content)| (*kind, content));
+        for (kind, content) in [("text/plain", &self.plain)].into_iter().chain(rich) {
+            // writing to a String cannot fail
+            let _ = writeln!(out, "EVCXR_BEGIN_CONTENT {kind}\n{}\nEVCXR_END_CONTENT", content.trim());
+        }
+        // nobody listens any more: nothing to be done
+        let _ = io::stdout().write_all(out.as_bytes());
+    }
+}
+
+/// Something that a notebook can show.
+///
+/// ```
+/// use unbiased::{Estimate, notebook::Show};
+///
+/// assert_eq!(Estimate::from_draws(&[1.0, 2.0, 3.0, 4.0]).show().plain(), "2.50 ± 0.65 (4 draws)");
+/// ```
+pub trait Show {
+    /// How it looks.
+    fn show(&self) -> Shown;
+}
+
+/// The kernel looks for a method of this name on what a cell ends in; a trait's would have to be imported in every notebook.
+macro_rules! displayed {
+    ($($kind:ty),*) => {
+        $(impl $kind {
+            /// Shows it below a notebook's cell.
+            pub fn evcxr_display(&self) {
+                self.show().print();
+            }
+        })*
+    };
+}
+
+displayed!(
+    Figure, Estimate, Outcome, Report, Diagnosis, Judgement, Agreement, Exact, Table, Comparison, Checked
+);
+
+impl Show for Figure {
+    fn show(&self) -> Shown {
+        Shown { plain: self.title().into(), rich: Some(("image/svg+xml", self.svg().into())) }
+    }
+}
+
+impl Show for Estimate {
+    fn show(&self) -> Shown {
+        let draws = self.draws();
+        let interval = self.confidence_interval(0.95).ok().zip(self.std_error());
+        let inside = interval.map_or(String::new(), |([low, high], std_error)| {
+            let places = places(std_error);
+            format!(", 95 %: {low:.places$} to {high:.places$}")
+        });
+        Shown::html(
+            format!("{self} ({draws} draws)"),
+            html! { b { (self) } span style=(FAINT) { " (" (draws) " draws" (inside) ")" } },
+        )
+    }
+}
+
+impl Show for Outcome {
+    fn show(&self) -> Shown {
+        let Self { estimate, seed, cost, .. } = self;
+        // seconds are left out: they differ from run to run
+        let work = format!(
+            "{} draws, {} random numbers, {} evaluations, seed {seed}",
+            estimate.draws(),
+            cost.random_numbers,
+            cost.evaluations
+        );
+        Shown::html(
+            format!("{estimate} ({work})"),
+            html! { b { (estimate) } span style=(FAINT) { " (" (work) ")" } },
+        )
+    }
+}
+
+impl Show for Report {
+    fn show(&self) -> Shown {
+        let good = match self.verdict {
+            Verdict::Unbiased => Some(true),
+            Verdict::Biased => Some(false),
+            Verdict::Undecided => None,
+        };
+        Shown::verdict(good, &self.to_string())
+    }
+}
+
+impl Show for Judgement {
+    fn show(&self) -> Shown {
+        let good = match self {
+            Self::Right => Some(true),
+            Self::TooFewDigits => None,
+            Self::LooksLike(_) | Self::Unknown { .. } => Some(false),
+        };
+        Shown::verdict(good, &self.to_string())
+    }
+}
+
+impl Show for Agreement {
+    fn show(&self) -> Shown {
+        Shown::verdict(Some(self.agrees), &self.to_string())
+    }
+}
+
+impl Show for Exact {
+    fn show(&self) -> Shown {
+        let said = format!("mean {:.9}, variance {:.9}, by quadrature", self.mean, self.variance);
+        Shown::html(said.clone(), html! { (said) })
+    }
+}
+
+impl Show for Diagnosis {
+    fn show(&self) -> Shown {
+        let plain = self.to_string();
+        let markup = html! {
+            @for (index, line) in plain.lines().enumerate() {
+                @if index == 0 {
+                    (said(good(self), line))
+                } @else {
+                    div style=(if line.starts_with("  ") { "margin-left: 2em" } else { "margin-left: 1em" }) { (line.trim_start()) }
+                }
+            }
+        };
+        Shown::html(plain, markup)
+    }
+}
+
+impl Show for Table {
+    fn show(&self) -> Shown {
+        let plain = format!("{}\n{}", self.caption, self.lines().join("\n"));
+        let markup = html! {
+            table {
+                caption style="text-align: left" { (self.caption) }
+                thead { tr { @for name in &self.columns { th style=(LEFT) { (name) } } } }
+                tbody { @for row in &self.rows { tr { @for cell in row { td style=(LEFT) { (cell) } } } } }
+            }
+        };
+        Shown::html(plain, markup)
+    }
+}
+
+/// What a second bought each rival on one core of this machine, and when it reaches an error.
+impl Show for Comparison {
+    fn show(&self) -> Shown {
+        let ranks: Vec<(&Measured, f64)> =
+            self.ranking().iter().map(|place| (place.rival, place.of_the_best)).collect();
+        let rows = self.rivals.iter().map(|rival| {
+            let share =
+                ranks.iter().find(|(ranked, _)| std::ptr::eq(*ranked, rival)).map(|(_, share)| *share);
+            let to = |error| rival.seconds_to(error).map_or("never".into(), duration);
+            let efficiency = match rival.nature {
+                Nature::InfiniteVariance => "infinite variance".into(),
+                Nature::Biased => {
+                    format!("bias {} %", two_digits(100.0 * rival.bias() / rival.truth)).replace('-', "−")
+                }
+                Nature::Unbiased => share.map_or(String::new(), two_digits),
+            };
+            let error = format!("{} %", two_digits(100.0 * rival.rmse(1.0) / rival.truth.abs()));
+            let error = error.replace("∞ %", "∞");
+            vec![rival.name.clone(), duration(rival.seconds), error, to(1e-3), to(1e-4), efficiency]
+        });
+        Table {
+            caption: "What a second buys, on one core of the machine that ran this".into(),
+            columns: vec!["estimator", "a draw", "error after 1 s", "to 0.1 %", "to 0.01 %", "efficiency"],
+            rows: rows.collect(),
+        }
+        .show()
+    }
+}
+
+/// Several estimates of one truth, side by side.
+///
+/// ```
+/// use unbiased::{Budget, estimate, from_fn, notebook};
+///
+/// let one = estimate(&from_fn(|rng| 2.0 * rng.uniform()), Budget::Draws(1000), 1)?;
+/// let table = notebook::against(1.0, &[("2U", one)]);
+/// assert_eq!(table.rows.len(), 1);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+pub fn against(truth: f64, estimates: &[(&str, Estimate)]) -> Table {
+    let minus = |number: String| number.replace('-', "−");
+    let rows = estimates.iter().map(|(name, estimate)| {
+        let ratio =
+            if truth == 0.0 { String::new() } else { minus(format!("{:.3}", estimate.mean() / truth)) };
+        let z = match estimate.z(truth) {
+            // a sum with 0 makes 0 of −0
+            Some(z) if z.abs() < 1e3 => minus(format!("{:.1}", (10.0 * z).round() / 10.0 + 0.0)),
+            Some(z) if z.is_infinite() => "no variance".into(),
+            Some(z) => minus(format!("{z:.0}")),
+            None => String::new(),
+        };
+        vec![(*name).into(), minus(estimate.to_string()), ratio, z, estimate.draws().to_string()]
+    });
+    Table {
+        caption: minus(format!("The truth is {}", crate::workbook::shortened(truth))),
+        columns: vec!["", "mean ± std error", "over the truth", "std errors off", "draws"],
+        rows: rows.collect(),
+    }
+}
+
+/// One's own estimator, checked.
+#[derive(Debug, Clone)]
+pub enum Checked {
+    /// It is not written yet: its first draw is NaN.
+    Missing(Topic),
+    /// What its ratios to the truth say.
+    Found(Diagnosis),
+}
+
+/// Draws a probe: ratios to a quarter of a per cent or so.
+const DRAWS: u64 = 200_000;
+
+/// Std errors within which a ratio is certain to lie.
+const CERTAIN: f64 = 5.0;
+
+/// Tries an estimator on all probes of its topic, with 200,000 draws each, and says whether it is missing, consistent with a classic mistake, or unbiased within so much.
+///
+/// # Errors
+/// If a draw other than the first is not finite.
+///
+/// ```
+/// use unbiased::check::{Attempt, Finding};
+/// use unbiased::notebook::{Checked, check_mine};
+///
+/// let unwritten = Attempt::exponential(|_rate, _rng| f64::NAN);
+/// assert!(matches!(check_mine(&unwritten)?, Checked::Missing(_)));
+///
+/// let multiplied = Attempt::exponential(|rate, rng| -rate * (1.0 - rng.uniform()).ln());
+/// let Checked::Found(diagnosis) = check_mine(&multiplied)? else { panic!() };
+/// assert_eq!(diagnosis.finding(), Finding::Known);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+pub fn check_mine(mine: &Attempt<'_>) -> Result<Checked> {
+    match check::measure(mine, DRAWS, 1) {
+        Ok(measurements) => Ok(Checked::Found(check::diagnose(&measurements)?)),
+        Err(Error::Draw { block: 0, draw: 0, value, .. }) if value.is_nan() => {
+            Ok(Checked::Missing(mine.topic()))
+        }
+        Err(error) => Err(error),
+    }
+}
+
+impl Checked {
+    /// Where nothing is wrong: the relative difference to the truth, on every probe, that is left after five std errors.
+    pub fn within(&self) -> Option<f64> {
+        match self {
+            Self::Found(diagnosis) if diagnosis.finding() == Finding::NothingWrong => {
+                let measurements = diagnosis.measurements().iter();
+                let off = measurements.map(|measurement| {
+                    let (ratio, error) = measurement.ratio();
+                    (ratio - measurement.probe.right_ratio()).abs() + CERTAIN * error
+                });
+                Some(off.fold(0.0, f64::max))
+            }
+            _ => None,
+        }
+    }
+}
+
+impl Show for Checked {
+    fn show(&self) -> Shown {
+        let diagnosis = match self {
+            Self::Missing(topic) => {
+                return Shown::verdict(
+                    None,
+                    &format!("Missing: there is no estimator of “{topic}” yet; its draw is NaN."),
+                );
+            }
+            Self::Found(diagnosis) => diagnosis,
+        };
+        let Shown { plain, rich } = diagnosis.show();
+        let Some(within) = self.within() else { return Shown { plain, rich } };
+        let sentence = format!(
+            "Unbiased within {:.2} % on every probe, {CERTAIN} std errors counted in.",
+            100.0 * within
+        );
+        let rich = rich.map(|(kind, content)| (kind, said(Some(true), &sentence).into_string() + &content));
+        Shown { plain: format!("{sentence}\n{plain}"), rich }
+    }
+}
+
+fn good(diagnosis: &Diagnosis) -> Option<bool> {
+    match diagnosis.finding() {
+        Finding::NothingWrong => Some(true),
+        Finding::Known | Finding::Unknown => Some(false),
+        Finding::Unclear => None,
+    }
+}
+
+const LEFT: &str = "text-align: left";
+const FAINT: &str = "opacity: 0.7";
+
+/// A sentence behind its mark; the bar's colour says nothing that the mark does not.
+fn said(good: Option<bool>, sentence: &str) -> Markup {
+    let (mark, colour) = match good {
+        Some(true) => ("✓", "#009E73"),
+        Some(false) => ("✗", "#D55E00"),
+        None => ("?", "#888888"),
+    };
+    html! { div style=(format!("border-left: 4px solid {colour}; padding-left: 0.6em")) { b { (mark) } " " (sentence) } }
+}
+
+/// Seconds, in the unit that suits them.
+fn duration(seconds: f64) -> String {
+    let (factor, unit) = match seconds {
+        s if s < 1e-6 => (1e9, "ns"),
+        s if s < 1e-3 => (1e6, "µs"),
+        s if s < 1.0 => (1e3, "ms"),
+        _ => (1.0, "s"),
+    };
+    format!("{} {unit}", two_digits(factor * seconds))
+}
+
+/// Two significant digits, or all of a whole number.
+fn two_digits(x: f64) -> String {
+    if x.is_infinite() {
+        return "∞".into();
+    }
+    let places = (1.0 - x.abs().log10().floor()).clamp(0.0, 9.0);
+    // 0 has no first digit
+    let places = if x == 0.0 { 0 } else { places as usize };
+    format!("{x:.places$}")
+}
+
+/// Decimal places that show two digits of an error.
+fn places(error: f64) -> usize {
+    let leading = error.log10().floor();
+    if leading.is_finite() { (1.0 - leading).clamp(0.0, 17.0) as usize } else { 6 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hemisphere::Hemisphere;
+
+    #[test]
+    fn every_kind_has_plain_text_and_something_better() {
+        let figure = crate::figure::integrand().unwrap();
+        let (kind, picture) = figure.show().rich().map(|(kind, content)| (kind, content.to_owned())).unwrap();
+        assert_eq!((kind, picture.as_str()), ("image/svg+xml", figure.svg()));
+        assert_eq!(figure.show().plain(), figure.title());
+
+        let table = against(0.0, &[("<b>", Estimate::from_draws(&[-1.0, 2.0]))]);
+        let shown = table.show();
+        let (kind, content) = shown.rich().unwrap();
+        assert_eq!(kind, "text/html");
+        assert!(content.contains("&lt;b&gt;") && !content.contains("<b>"), "{content}");
+        assert!(shown.plain().contains("0.5 ± 1.5"), "{}", shown.plain());
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        for (seconds, shown) in
+            [(1.4e-9, "1.4 ns"), (2.51e-5, "25 µs"), (0.9, "900 ms"), (1.25, "1.2 s"), (3500.4, "3500 s")]
+        {
+            assert_eq!(duration(seconds), shown);
+        }
+        for (x, shown) in [(0.0, "0"), (0.00012345, "0.00012"), (-13.4, "-13"), (f64::INFINITY, "∞")] {
+            assert_eq!(two_digits(x), shown);
+        }
+    }
+
+    #[test]
+    fn the_three_states_of_ones_own_estimator() {
+        let state = |attempt: &Attempt<'_>| check_mine(attempt).unwrap().show().plain().to_owned();
+        assert!(state(&Attempt::bounces(|_, _| f64::NAN)).starts_with("Missing"));
+        let wrong = |light: &dyn Fn(&_) -> f64, albedo: f64, rng: &mut _| {
+            albedo * light(&Hemisphere::Uniform.sample(rng))
+        };
+        let said = state(&Attempt::hemisphere(wrong));
+        assert!(
+            said.starts_with("Not right.") && said.contains("uniform directions, the cosine weight"),
+            "{said}"
+        );
+        let right = |light: &dyn Fn(&_) -> f64, albedo: f64, rng: &mut _| {
+            albedo * light(&Hemisphere::Cosine.sample(rng))
+        };
+        let checked = check_mine(&Attempt::hemisphere(right)).unwrap();
+        // the largest spread of a ratio is below 3: five std errors are below 3.4 %
+        let within = checked.within().unwrap();
+        assert!(within > 0.0 && within <= 0.04, "{within}");
+        assert!(checked.show().plain().starts_with("Unbiased within"));
+        // NaN later on is a fault of the estimator, not a missing one
+        let late = Attempt::bounces(|_, rng| if rng.random_numbers() > 5 { f64::NAN } else { rng.uniform() });
+        assert!(matches!(check_mine(&late), Err(Error::Draw { .. })));
+    }
+}
