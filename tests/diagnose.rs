@@ -227,7 +227,10 @@ fn the_gallery_is_complete_and_in_words() {
 fn predictions_agree_with_quadrature() {
     let mut compared = 0;
     for mistake in gallery() {
-        for probe in mistake.topic().probes() {
+        let probes = mistake.topic().probes();
+        // under mutation the slow integrals are left to the runs
+        let quick = mistake.topic() != Topic::Hemisphere || !common::mutation();
+        for probe in probes.iter().take(if quick { probes.len() } else { 1 }) {
             let Some(exact) = mistake.exactly(probe) else { continue };
             let off = (exact.mean / probe.unit() - mistake.ratio(probe)).abs();
             assert!(off <= 1e-7, "“{}” at {probe}: {off:e}", mistake.name());
@@ -235,7 +238,7 @@ fn predictions_agree_with_quadrature() {
         }
     }
     println!("{compared} predictions compared");
-    assert!(compared > 250);
+    assert!(compared > 250 || common::mutation());
 }
 
 /// The same against runs.
