@@ -726,13 +726,17 @@ fn candidates_come_best_first() {
             "{chi_squares:?}"
         );
         several += usize::from(chi_squares.len() > 1);
-        for group in diagnosis.groups() {
+        let sum_is = |claimed: f64, predicted: &dyn Fn(&Probe) -> f64| {
             let of = |measurement: &check::Measurement| {
                 let (ratio, error) = measurement.ratio();
-                ((ratio - group.mistakes[0].ratio(&measurement.probe)) / error.hypot(1e-6)).powi(2)
+                ((ratio - predicted(&measurement.probe)) / error.hypot(1e-6)).powi(2)
             };
             let sum: f64 = measured.iter().map(of).sum();
-            assert!((sum - group.chi_square).abs() <= 1e-3 * (1.0 + sum), "{sum} {}", group.chi_square);
+            assert!((sum - claimed).abs() <= 1e-3 * (1.0 + sum), "{sum} {claimed}");
+        };
+        sum_is(diagnosis.chi_square_of_right(), &Probe::right_ratio);
+        for group in diagnosis.groups() {
+            sum_is(group.chi_square, &|probe| group.mistakes[0].ratio(probe));
         }
     }
     assert!(several >= 5, "{several}");
