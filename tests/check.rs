@@ -3,7 +3,7 @@
 mod common;
 
 use rand::distr::Distribution;
-use unbiased::check::{self, Unbiased, Verdict, distributed_as, exactly};
+use unbiased::check::{self, CELLS, Unbiased, Verdict, distributed_as, exactly};
 use unbiased::hemisphere::{Direction, Hemisphere};
 use unbiased::inversion::Exponential;
 use unbiased::lambertian::Lambertian;
@@ -358,6 +358,17 @@ fn directions_of_another_density_are_refused() {
     });
     let found = check::directions(&tied, Cosine, 0.02, 1e-12, common::seed(122)).unwrap();
     assert!(!found.agrees && matches!(found.place, check::Place::Cell(..)), "{found}");
+    // for one draw in two, so that no cell is empty: those on the diagonal have 4.5 times their share
+    let half_tied = Wrong(|rng| {
+        let (u, v) = (rng.uniform(), rng.uniform());
+        let turn = if rng.uniform() < 0.5 { u } else { v };
+        Direction::polar((1.0 - u).sqrt(), std::f64::consts::TAU * turn).unwrap()
+    });
+    let found = check::directions(&half_tied, Cosine, 0.02, 1e-12, common::seed(123)).unwrap();
+    assert!(
+        !found.agrees && matches!(found.place, check::Place::Cell(row, column) if row == CELLS - 1 - column),
+        "{found}"
+    );
 }
 
 /// The band of DKW and the cells together: 300 right samplers at α = 0.3 and pinned seeds.
