@@ -311,6 +311,20 @@ fn samplers_with_another_law_are_refused() {
     assert!(distributed_as(&nan, cdf, 0.1, 1e-12, 1).is_err());
 }
 
+/// As many draws as it takes, and none more, for a deviation to lie beyond the band of α and that of 1e-6 together; the strain is the deviation in bands.
+#[test]
+fn a_comparison_of_laws_takes_the_draws_that_its_deviation_needs() {
+    let middle = from_fn(|_| 0.5);
+    for (deviation, alpha) in [(0.01, 1e-12), (0.05, 1e-6), (0.3, 0.1)] {
+        let found = distributed_as(&middle, |x| x.clamp(0.0, 1.0), deviation, alpha, 1).unwrap();
+        let band = |n: usize, alpha: f64| ((2.0 / alpha).ln() / (2 * n) as f64).sqrt();
+        let reach = |n: usize| band(n, alpha) + band(n, 2e-6);
+        assert!(reach(found.draws) <= deviation && reach(found.draws - 1) > deviation, "{found:?}");
+        let strain = 0.5 / band(found.draws, alpha);
+        assert!((found.strain - strain).abs() <= 1e-12 * strain, "{found:?}");
+    }
+}
+
 #[test]
 fn laws_with_jumps_are_compared_at_both_sides_of_each() {
     let roulette = Roulette::new(0.83).unwrap();
