@@ -222,6 +222,22 @@ fn the_gallery_is_complete_and_in_words() {
     }
 }
 
+/// The room's truths: Howell's and the worksheet's, and Σ ρᵏ L where all faces are alike.
+#[test]
+fn the_room_is_probed_at_known_truths() {
+    let truths: Vec<_> =
+        Topic::Paths.probes().iter().map(|probe| (probe.to_string(), probe.unit())).collect();
+    let truth = |of: &str| truths.iter().find(|(probe, _)| probe.contains(of)).unwrap().1;
+    let powers = |range: std::ops::RangeInclusive<i32>| range.map(|k| 0.8f64.powi(k)).sum::<f64>();
+    for (of, known) in [
+        ("k = 2, p at 0, 0, 1, walls 0.5, cube 0.8", 0.039903921548169116),
+        ("walls 0.7, cube 0.7, all emit 0.4", 0.4 * 0.7f64.powi(3)),
+        ("walls 0.8, cube 0.8, all emit 2.5", 2.5 * powers(0..=6)),
+    ] {
+        assert!((truth(of) / known - 1.0).abs() <= 1e-9, "{of}: {}", truth(of));
+    }
+}
+
 /// Closed forms against quadrature of the estimators themselves, to 1e-7; bounces, with their hundreds of steps, are left to the runs.
 #[test]
 fn predictions_agree_with_quadrature() {
