@@ -117,6 +117,15 @@ fn a_trace_ends_as_the_report_says() {
     }
 }
 
+/// 256 draws of 10¹⁰ times the mean claimed multiply the boldest stake, a tenth of a half, by (0.1 + 0.9e10)²⁵⁶, which is far outside f64.
+#[test]
+fn wealth_beyond_f64_is_kept_as_its_logarithm() {
+    let (_, looks) = Unbiased::new(1e-10, [0.0, 1.0]).unwrap().trace(&from_fn(|_| 1.0)).unwrap();
+    let wealth = 256.0 * (0.1 + 0.9e10f64).ln() - 20f64.ln();
+    assert_eq!(looks[0].draws, 256);
+    assert!((looks[0].against_truth / wealth - 1.0).abs() <= 1e-12, "{:?}, not {wealth}", looks[0]);
+}
+
 /// A bias of one part in a thousand, planted in an estimator of each section, is refuted: β = 1e-6 bounds the chance that it is certified first.
 #[test]
 fn planted_biases_of_a_thousandth_are_refuted() {
