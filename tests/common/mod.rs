@@ -17,10 +17,10 @@ pub fn draws(n: u64) -> u64 {
     if mutation() { n.div_ceil(20) } else { n }
 }
 
-/// proptest's settings: as many cases as asked for, the same ones on every run; a tenth under mutation.
+/// proptest's settings: as many cases as asked for, the same ones on every run; under mutation a tenth, but not below 100.
 pub fn config(cases: u32) -> proptest::test_runner::Config {
     proptest::test_runner::Config {
-        cases: if mutation() { cases.div_ceil(10) } else { cases },
+        cases: if mutation() { cases.min(cases.div_ceil(10).max(100)) } else { cases },
         rng_seed: proptest::test_runner::RngSeed::Fixed(seed(1)),
         failure_persistence: None,
         ..Default::default()
