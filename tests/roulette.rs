@@ -354,7 +354,9 @@ fn a_block_is_the_same_work_however_many_bounces() {
     }
     let bounces = || roulette(0.984375).bounces_by_simulation().unwrap();
     assert_eq!(per_block(roulette(0.9).wrap(bounces())), 1 << 12);
-    assert_eq!(per_block(&bounces()), 1 << 12);
+    let lent = bounces();
+    let lent: &dyn Estimator = &lent;
+    assert_eq!(per_block(lent), 1 << 12);
     assert_eq!(per_block(Box::new(bounces()) as Box<dyn Estimator>), 1 << 12);
     for model in [light(0.8, 0.25), light(0.999, 0.0078125)] {
         let (paths, cut) = (model.roulette(0.984375).unwrap(), model.truncated(63).unwrap());
