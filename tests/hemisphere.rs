@@ -61,7 +61,7 @@ const DRAWS: usize = 1_000_000;
 
 fn draw(hemisphere: Hemisphere, seed: u64) -> Vec<Direction> {
     let mut rng = Stream::new(common::seed(seed), 0);
-    (0..DRAWS).map(|_| hemisphere.sample(&mut rng)).collect()
+    (0..common::draws(DRAWS as u64)).map(|_| hemisphere.sample(&mut rng)).collect()
 }
 
 #[test]

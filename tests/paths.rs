@@ -289,6 +289,48 @@ fn truths_are_the_worksheets() {
     assert!((seen_from_floor(1.7, 0.2, 1.0) / seen(&far, 1.0) - 1.0).abs() <= 1e-12);
 }
 
+/// One bounce is known on the cube and from its height upwards, two on its top, by the quadrature here.
+#[test]
+fn the_rooms_closed_forms_are_the_quadratures() {
+    for (h, x, y, closeness) in [(0.5, 0.0, 0.0, 1e-11), (1.3, 0.21, -0.43, 1e-11), (1.9, -0.37, 0.12, 2e-9)]
+    {
+        let scene = Scene {
+            wall_albedo: 0.61,
+            cube_albedo: 0.37,
+            light_half_width: h,
+            radiance: 7.0,
+            point: [x, y, 1.0],
+            ..Scene::default()
+        };
+        let (one, two) = (room(scene).one_bounce().unwrap(), room(scene).two_bounces().unwrap());
+        let p = Vertex::at([x, y, 1.0]).unwrap();
+        assert!((one / (0.37 * 7.0 * seen(&p, h)) - 1.0).abs() <= 1e-13, "{one}");
+        let off = (two / (0.37 * 0.61 * 7.0 * two_bounces(x, y, h)) - 1.0).abs();
+        println!("h = {h}: {off:.1e}");
+        assert!(off <= closeness, "h = {h}: {two}, {off:e} off");
+    }
+    let known = |point| {
+        let room = room(Scene { point, ..Scene::default() });
+        [room.one_bounce().is_some(), room.two_bounces().is_some()]
+    };
+    assert_eq!(known([0.5, 0.1, 0.4]), [true, false], "on the cube's side");
+    assert_eq!(known([2.0, 0.1, 1.0]), [true, false], "on a wall, as high as the cube");
+    assert_eq!(known([2.0, 0.1, 0.9]), [false, false], "on a wall, lower");
+    assert_eq!(known([1.5, 0.1, 0.0]), [false, false], "on the floor");
+}
+
+/// Threads share a run by its blocks, so one is about the same work however long the paths are: some ten thousand random numbers.
+#[test]
+fn a_block_is_the_same_work_however_long_the_paths() {
+    for (albedo, bounces) in [(0.5, UpTo(1)), (0.5, UpTo(64)), (0.5, All(0.99)), (0.99, AllByWeight)] {
+        let paths = paths(furnace(albedo), bounces, WAYS[0]);
+        let run = Run::new(common::seed(546)).estimate(&paths, Budget::Draws(2000)).unwrap();
+        let numbers = run.cost.random_numbers as f64 / 2000.0 * paths.draws_per_block() as f64;
+        println!("{bounces:?}: {numbers}");
+        assert!((2e4..=1e5).contains(&numbers), "{bounces:?}: {numbers}");
+    }
+}
+
 // ---- the furnace ---------------------------------------------------------------------------------------------------
 
 const ALBEDOS: [f64; 4] = [0.2, 0.5, 0.8, 0.99];

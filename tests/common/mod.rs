@@ -7,10 +7,20 @@ pub fn seed(n: u64) -> u64 {
     n.wrapping_add(fresh.wrapping_mul(1_000_003))
 }
 
-/// proptest's settings: as many cases as asked for, the same ones on every run.
+/// Set by `tests/mutants`, where a mutant is to cost seconds.
+pub fn mutation() -> bool {
+    std::env::var_os("UNBIASED_MUTATION").is_some()
+}
+
+/// So many draws; under mutation, a twentieth.
+pub fn draws(n: u64) -> u64 {
+    if mutation() { n.div_ceil(20) } else { n }
+}
+
+/// proptest's settings: as many cases as asked for, the same ones on every run; under mutation a tenth, but not below 100.
 pub fn config(cases: u32) -> proptest::test_runner::Config {
     proptest::test_runner::Config {
-        cases,
+        cases: if mutation() { cases.min(cases.div_ceil(10).max(100)) } else { cases },
         rng_seed: proptest::test_runner::RngSeed::Fixed(seed(1)),
         failure_persistence: None,
         ..Default::default()
