@@ -40,6 +40,13 @@ fn sorted(n: usize, mut draw: impl FnMut() -> f64) -> Vec<f64> {
 }
 
 #[test]
+fn a_rate_is_kept() {
+    for rate in [0.37, 1e-300, 1e300] {
+        assert_eq!(Exponential::new(rate).unwrap().rate(), rate);
+    }
+}
+
+#[test]
 fn closed_forms_agree_with_another_library() {
     for rate in RATES {
         let (ours, theirs) = (exponential(rate), Exp::new(rate).unwrap());

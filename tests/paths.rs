@@ -323,6 +323,17 @@ fn the_rooms_closed_forms_are_the_quadratures() {
     );
 }
 
+#[test]
+fn paths_say_what_they_count() {
+    for (bounces, most) in
+        [(Exactly(3), 3), (UpTo(7), 7), (UpTo(0), 0), (All(0.5), u32::MAX), (AllByWeight, u32::MAX)]
+    {
+        let paths = paths(furnace(0.5), bounces, WAYS[0]);
+        assert_eq!(paths.most_bounces(), most, "{bounces:?}");
+        assert_eq!(paths.room().scene(), room(furnace(0.5)).scene());
+    }
+}
+
 /// Threads share a run by its blocks, so one is about the same work however long the paths are: some ten thousand random numbers.
 #[test]
 fn a_block_is_the_same_work_however_long_the_paths() {
