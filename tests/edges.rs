@@ -5,13 +5,11 @@
 
 mod common;
 
-use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
 
-use common::config;
+use common::{Stuck, config};
 use proptest::prelude::*;
 use proptest::sample::select;
-use rand::TryRng;
 use rand::distr::Distribution;
 use unbiased::hemisphere::{Direction, Hemisphere};
 use unbiased::inversion::{Exponential, Inversion};
@@ -313,26 +311,6 @@ proptest! {
 }
 
 // ---- generators that are stuck ----
-
-/// A generator of one word for ever.
-struct Stuck(u64);
-
-impl TryRng for Stuck {
-    type Error = Infallible;
-
-    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
-        Ok((self.0 >> 32) as u32)
-    }
-
-    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
-        Ok(self.0)
-    }
-
-    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
-        bytes.fill(self.0 as u8);
-        Ok(())
-    }
-}
 
 /// All zeros, all ones, every single bit, and all but one.
 fn words() -> impl Iterator<Item = u64> {

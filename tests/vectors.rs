@@ -9,10 +9,11 @@
 //! UNBIASED_VECTORS=more.csv cargo test --release --test vectors -- --nocapture      # another table of this form
 //! ```
 
-use std::collections::BTreeMap;
-use std::convert::Infallible;
+mod common;
 
-use rand::TryRng;
+use std::collections::BTreeMap;
+
+use common::Stuck;
 use rand::distr::Distribution;
 use unbiased::hemisphere::{Direction, Hemisphere};
 use unbiased::inversion::Exponential;
@@ -113,26 +114,6 @@ impl From<f64> for Found {
     }
 }
 
-/// A generator of one word for ever.
-struct Word(u64);
-
-impl TryRng for Word {
-    type Error = Infallible;
-
-    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
-        Ok((self.0 >> 32) as u32)
-    }
-
-    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
-        Ok(self.0)
-    }
-
-    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
-        bytes.fill(self.0 as u8);
-        Ok(())
-    }
-}
-
 /// Whether a generator can give u.
 fn is_drawn(u: f64) -> bool {
     (0.0..1.0).contains(&u) && (u * 2f64.powi(53)).fract() == 0.0
@@ -167,7 +148,7 @@ fn evaluate(row: &Row) -> Result<Found, Error> {
             let (law, u) = (Exponential::new(1.0)?, f32::from_bits(row.hex("u") as u32));
             let on_grid = u * 2f32.powi(24);
             if u < 1.0 && on_grid.fract() == 0.0 {
-                law.sample(&mut Word(u64::from(on_grid as u32) << 40))
+                law.sample(&mut Stuck(u64::from(on_grid as u32) << 40))
             } else {
                 law.inverse_cdf(u.into())? as f32
             }

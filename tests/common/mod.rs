@@ -26,3 +26,23 @@ pub fn config(cases: u32) -> proptest::test_runner::Config {
         ..Default::default()
     }
 }
+
+/// A generator of one word for ever.
+pub struct Stuck(pub u64);
+
+impl rand::TryRng for Stuck {
+    type Error = std::convert::Infallible;
+
+    fn try_next_u32(&mut self) -> Result<u32, std::convert::Infallible> {
+        Ok((self.0 >> 32) as u32)
+    }
+
+    fn try_next_u64(&mut self) -> Result<u64, std::convert::Infallible> {
+        Ok(self.0)
+    }
+
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), std::convert::Infallible> {
+        bytes.fill(self.0 as u8);
+        Ok(())
+    }
+}
