@@ -154,7 +154,7 @@ fn drawing(paths: &Paths, chosen: &[Path], seed: u64, edition: Edition) -> Resul
             format!("{} sampled paths of {word} bounces", ["No", "One", "Two", "Three"].get(chosen.len()).unwrap_or(&"Some")),
             format!(
                 "The room from the side. Numbered paths, as they were sampled (seed {seed}), go from p in a direction ωᵢ to a point p₁, p₂, … on another face{} and on to the light, none through the cube; ωₒ leads from p to the eye. \
-                 Short arrows are normals n; a ring with a dot is one that points towards the reader or away. What looks short may lead far in depth.",
+                 Short arrows are normals n. What looks short may lead far in depth.",
                 if bounces > 2 { ", from there to p₁′, p₂′, …" } else { "" }
             ),
         ),
@@ -209,7 +209,7 @@ fn draw_path(path: &Path, line: &[[f64; 2]], ink: Ink, number: &str, panel: &mut
     panel.marks("point of the light", ink, Marker::Disc, line.last().copied());
 }
 
-/// The normal at a vertex: an arrow, or, seen end on, a ring with a dot.
+/// The normal at a vertex: an arrow, or, seen end on, a ring.
 fn draw_normal(vertex: &Vertex, text: &str, panel: &mut Panel, labels: &mut Labels) {
     let (from, to) = (seen(vertex.position()), seen(vertex.position() + vertex.normal() * 0.4));
     if distance(from, to) > 0.1 {
