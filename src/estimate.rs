@@ -17,7 +17,7 @@ use crate::extended::two_sum;
 use crate::fast::widest;
 
 /// Draws summed in one two-pass sweep: they stay in the first-level cache between the passes.
-pub(crate) const SLICE: usize = 512;
+pub(crate) const SLICE: usize = 1024;
 
 /// Sums are kept about one of two exponents, 0 and 600, and squares about one of three, −600, 0 and 600, so that
 /// none over- or underflows.

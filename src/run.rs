@@ -222,7 +222,7 @@ impl<'a> Run<'a> {
     /// If the budget is empty or out of reach, the threads cannot be started, or a draw is NaN or infinite.
     pub fn estimate(&self, estimator: &(impl Estimator + ?Sized), budget: Budget) -> Result<Outcome> {
         let start = Instant::now();
-        let mut blocks = Blocks { estimator, pool: self.pool()?, cost: Cost::default() };
+        let mut blocks = Blocks { estimator, workers: self.workers()?, cost: Cost::default() };
         let (estimate, pilot) = match budget {
             Budget::Draws(draws) => {
                 require_count("the number of draws", draws, draws > 0, "positive")?;
@@ -249,14 +249,17 @@ impl<'a> Run<'a> {
         Ok(Outcome { estimate, seed: self.seed, cost: blocks.cost, elapsed: start.elapsed(), pilot })
     }
 
-    fn pool(&self) -> Result<Option<rayon::ThreadPool>> {
-        let Some(threads) = self.threads else { return Ok(None) };
+    fn workers(&self) -> Result<Workers> {
+        let Some(threads) = self.threads else { return Ok(Workers::AllCores) };
         let ok = (1..=MOST_THREADS).contains(&threads);
         require_count("the number of threads", threads as u64, ok, "from 1 to 1024")?;
+        if threads == 1 {
+            return Ok(Workers::Caller);
+        }
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
-            .map(Some)
+            .map(Workers::Own)
             .map_err(|error| Error::Threads { threads, reason: error.to_string() })
     }
 
@@ -341,10 +344,18 @@ const PILOT_BLOCKS: u64 = 64;
 /// Sets the pilot's seed apart from the run's.
 const PILOT: u64 = 0x7069_6c6f_7420_7275;
 
+/// Which threads do the work.
+enum Workers {
+    /// The calling one alone: starting another would take as long as some ten thousand draws.
+    Caller,
+    AllCores,
+    Own(rayon::ThreadPool),
+}
+
 /// The blocks of one estimator's run, and what they have cost so far.
 struct Blocks<'e, E: ?Sized> {
     estimator: &'e E,
-    pool: Option<rayon::ThreadPool>,
+    workers: Workers,
     cost: Cost,
 }
 
@@ -355,15 +366,12 @@ impl<E: Estimator + ?Sized> Blocks<'_, E> {
         let first = estimate.draws() / size;
         let last = first.saturating_add(batch).min(limit.div_ceil(size));
         let estimator = self.estimator;
-        let run = || -> Vec<_> {
-            (first..last)
-                .into_par_iter()
-                .map(|block| one_block(estimator, seed, block, size.min(limit - block * size)))
-                .collect()
-        };
-        let results = match &self.pool {
-            Some(pool) => pool.install(run),
-            None => run(),
+        let one = |block| one_block(estimator, seed, block, size.min(limit - block * size));
+        let side_by_side = || -> Vec<_> { (first..last).into_par_iter().map(one).collect() };
+        let results = match &self.workers {
+            Workers::Caller => (first..last).map(one).collect(),
+            Workers::AllCores => side_by_side(),
+            Workers::Own(pool) => pool.install(side_by_side),
         };
         for result in results {
             let (of_block, cost) = result?;

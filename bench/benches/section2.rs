@@ -1,4 +1,4 @@
-//! Section 2: 512 independent points of the sheet's square, for each integrand of the test set.
+//! Section 2: 1,024 independent points of the sheet's square, for each integrand of the test set.
 
 use divan::Bencher;
 use unbiased::Stream;

@@ -1,4 +1,4 @@
-//! Section 4: 512 paths through the box room, light sampled, cosine directions.
+//! Section 4: 1,024 paths through the box room, light sampled, cosine directions.
 
 use divan::Bencher;
 use unbiased::Stream;

@@ -1,4 +1,4 @@
-//! Section 5: 512 numbers of bounces, by inversion and by coins.
+//! Section 5: 1,024 numbers of bounces, by inversion and by coins.
 
 use divan::Bencher;
 use unbiased::Stream;

@@ -3,7 +3,7 @@
 use unbiased::{Estimator, Stream};
 
 /// Draws that stay in the first-level cache, as in a run.
-pub const SLICE: usize = 512;
+pub const SLICE: usize = 1024;
 
 /// Sums `slices` slices of draws by `fill`: a bare loop.
 #[inline(never)]

@@ -22,7 +22,7 @@ use unbiased::roulette::Roulette;
 use unbiased::{Budget, Estimator, Run, Stream, from_fn};
 use unbiased_bench::{SLICE, Uniforms, sum_of_drawn, sum_of_filled};
 
-const SLICES: usize = 128;
+const SLICES: usize = 64;
 const TURNS: usize = 3;
 const BOUNCES: [u32; 4] = [1, 2, 3, 15];
 
@@ -76,12 +76,11 @@ fn ours(best: &mut Best) {
     });
     // the cost of a run: beside its own draws, filled and summed, and beside a loop over draws
     let one_by_one = from_fn(move |rng| exponential.draw(rng));
-    best.time("estimate: filled", draws, || {
-        Run::new(1).threads(1).estimate(&exponential, Budget::Draws(draws as u64)).unwrap().estimate.mean()
-    });
-    best.time("estimate: drawn", draws, || {
-        Run::new(1).threads(1).estimate(&one_by_one, Budget::Draws(draws as u64)).unwrap().estimate.mean()
-    });
+    let run = |estimator: &dyn Estimator| {
+        Run::new(1).threads(1).estimate(estimator, Budget::Draws(draws as u64)).unwrap().estimate.mean()
+    };
+    best.time("estimate: filled", draws, || run(&exponential));
+    best.time("estimate: drawn", draws, || run(&one_by_one));
     best.time("ours: exponential, drawn", draws, || sum_of_drawn(&one_by_one, &mut rng, SLICES));
     for threads in [1, 2] {
         let many = 1 << 24;
