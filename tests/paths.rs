@@ -3,9 +3,10 @@
 //! # What a test catches
 //! Where a draw is a function of a few numbers, these are put in: Gauss's nodes where it is smooth, which leaves rounding, and two random points in each
 //! of very many cells where it has jumps, whose differences give the error bar. Such a bar, and that of plain draws, may be missed by 8 std errors (1.2e-15, two-sided); a
-//! bias of 11 is caught in all runs but one in a thousand. Every comparison prints the bias that it would catch, and fails if that is more than is said here: 1e-3 of
-//! the truth for direct light, shadows, two bounces with the light sampled, the furnace without a limit and the balance of energy; 3e-3 for the cumulative values; 1e-2 for
-//! two bounces with the light found by chance (1e-3 in the ignored test); 3e-2 for every way against every other. About 300 comparisons: 4e-13 a run.
+//! bias of 11 is caught in all runs but one in a thousand. Every comparison with an error bar prints the bias that it would catch, and fails if that is more than 1e-3 of the truth:
+//! direct light, shadows, two bounces (the light sampled or found by chance; paths one by one and side by side), the furnace without a limit, the balance of energy (faces that emit, and the lamp
+//! alone), the worksheet's cumulative values, and every way against all others together, whose error is part of the 1e-3. What roulette ends is seen as a part of all light, what p itself emits included. About 120 comparisons:
+//! 1.5e-13 a run. With `UNBIASED_MUTATION` the cumulative values catch 5e-3.
 
 mod common;
 
@@ -70,23 +71,42 @@ fn plain(estimator: &impl Estimator, draws: u64, seed: u64) -> Found {
     estimate(estimator, Budget::Draws(draws), common::seed(seed)).unwrap().into()
 }
 
+/// The cells of the unit cube of d dimensions, cut into `side` on each: those whose last number is in the n-th part. The lowest corner of each, in cells.
+fn cells(dimensions: u32, side: u64, part: u64) -> impl Iterator<Item = [f64; 4]> {
+    let last = dimensions as usize - 1;
+    let mut corner = [0.0; 4];
+    corner[last] = part as f64;
+    (0..side.pow(dimensions - 1)).map(move |_| {
+        let this = corner;
+        for x in &mut corner[..last] {
+            *x += 1.0;
+            if *x < side as f64 {
+                break;
+            }
+            *x = 0.0;
+        }
+        this
+    })
+}
+
+/// From the sums of all parts, of means and of squared differences by four.
+fn over_cells(parts: &[[f64; 2]], cells: u64) -> Found {
+    let [sum, squares] = parts.iter().fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
+    Found { mean: sum / cells as f64, std_error: squares.sqrt() / cells as f64 }
+}
+
 /// Two random points in each of `side`ᵈ cells of the unit cube of d dimensions, of whose numbers a draw is a function.
 fn in_cells(estimator: &impl Estimator, dimensions: u32, side: u64, seed: u64) -> Found {
-    let (cells, block) = (side.pow(dimensions), side.pow(dimensions - 1));
-    let sums: Vec<[f64; 2]> = (0..side)
+    let d = dimensions as usize;
+    let parts: Vec<[f64; 2]> = (0..side)
         .into_par_iter()
-        .map(|first| {
-            let mut rng = Stream::new(common::seed(seed), first);
+        .map(|part| {
+            let mut rng = Stream::new(common::seed(seed), part);
             let (mut sum, mut squares) = (0.0, 0.0);
-            for cell in first * block..(first + 1) * block {
+            for corner in cells(dimensions, side, part) {
                 let mut draw = || {
-                    let mut rest = cell;
-                    let mut point = [0.0; 4];
-                    for x in &mut point[..dimensions as usize] {
-                        *x = ((rest % side) as f64 + rng.uniform()) / side as f64;
-                        rest /= side;
-                    }
-                    let mut script = Stream::scripted(&point[..dimensions as usize]);
+                    let point = corner.map(|low| (low + rng.uniform()) / side as f64);
+                    let mut script = Stream::scripted(&point[..d]);
                     let x = estimator.draw(&mut script);
                     assert!(script.random_numbers() <= dimensions.into(), "more numbers than thought");
                     x
@@ -98,47 +118,49 @@ fn in_cells(estimator: &impl Estimator, dimensions: u32, side: u64, seed: u64) -
             [sum, squares]
         })
         .collect();
-    let [sum, squares] = sums.iter().fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
-    let n = cells as f64;
-    Found { mean: sum / n, std_error: squares.sqrt() / n }
+    over_cells(&parts, side.pow(dimensions))
 }
 
 /// The same for paths that are filled, thirty-two at a time: the first numbers of all of them, then their second ones.
 fn filled_in_cells(paths: &Paths, dimensions: u32, side: u64, seed: u64) -> Found {
     const LANES: usize = 32;
-    let block = side.pow(dimensions - 1);
-    let sums: Vec<[f64; 2]> = (0..side)
+    let parts: Vec<[f64; 2]> = (0..side)
         .into_par_iter()
-        .map(|first| {
-            let mut rng = Stream::new(common::seed(seed), first);
+        .map(|part| {
+            let mut rng = Stream::new(common::seed(seed), part);
             let mut points = vec![[0.0; LANES]; dimensions as usize];
             let (mut sum, mut squares) = (0.0, 0.0);
-            let end = (first + 1) * block;
-            for some in (first * block..end).step_by(LANES / 2) {
+            let mut cells = cells(dimensions, side, part);
+            loop {
                 rng.fill_uniform(points.as_flattened_mut());
-                for lane in 0..LANES {
-                    let mut rest = some + lane as u64 / 2;
-                    for row in &mut points {
-                        row[lane] = ((rest % side) as f64 + row[lane]) / side as f64;
-                        rest /= side;
+                let mut count = 0;
+                for corner in cells.by_ref().take(LANES / 2) {
+                    for (row, low) in points.iter_mut().zip(corner) {
+                        for x in &mut row[count..count + 2] {
+                            *x = (low + *x) / side as f64;
+                        }
                     }
+                    count += 2;
+                }
+                if count == 0 {
+                    return [sum, squares];
                 }
                 let mut draws = [0.0; LANES];
-                let draws = &mut draws[..LANES.min(2 * (end - some) as usize)];
                 let mut script = Stream::scripted(points.as_flattened());
-                paths.fill(&mut script, draws);
-                assert_eq!(script.random_numbers() as usize, LANES * points.len(), "other numbers than thought");
-                for pair in draws.chunks_exact(2) {
+                paths.fill(&mut script, &mut draws[..count]);
+                assert_eq!(
+                    script.random_numbers() as usize,
+                    LANES * points.len(),
+                    "other numbers than thought"
+                );
+                for pair in draws[..count].chunks_exact(2) {
                     sum += 0.5 * (pair[0] + pair[1]);
                     squares += 0.25 * (pair[0] - pair[1]).powi(2);
                 }
             }
-            [sum, squares]
         })
         .collect();
-    let [sum, squares] = sums.iter().fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
-    let n = (block * side) as f64;
-    Found { mean: sum / n, std_error: squares.sqrt() / n }
+    over_cells(&parts, side.pow(dimensions))
 }
 
 /// Two random points in as many cells as it takes to catch this bias, from `side`ᵈ on.
@@ -169,8 +191,8 @@ fn held_by(
             break;
         }
         // with jumps half an order better than without cells, where it is smooth a whole one
-        let order = f64::from(dimensions) / 2.0 + 0.6;
-        side = (side as f64 * short.powf(1.0 / order) * 1.02) as u64 + 1;
+        let order = f64::from(dimensions) / 2.0 + 0.8;
+        side = (side as f64 * short.powf(1.0 / order) * 1.03) as u64 + 1;
         found = in_cells(side);
     }
     found.assert(truth, 0.02 * caught * truth, caught, &format!("{what} in {side}^{dimensions} cells"));
@@ -662,8 +684,9 @@ fn two_bounces_by_chance_are_the_quadratures() {
     let mut between = |low: f64, high: f64| low + (high - low) * rng.uniform();
     let at = [between(-0.5, 0.5), between(-0.5, 0.5)];
     let (scene, what, truth) = two_bounce_scene(1.9, at, [between(0.1, 1.0), between(0.1, 1.0)]);
-    for (seed, directions) in (471..).zip(Hemisphere::ALL) {
-        both_hold(scene, (directions, ByChance), 36, seed, truth, &what);
+    // as many cells as it takes, found beforehand
+    for (seed, (directions, side)) in (471..).zip([(Cosine, 70), (Uniform, 81)]) {
+        both_hold(scene, (directions, ByChance), side, seed, truth, &what);
     }
 }
 
@@ -759,30 +782,32 @@ fn what_is_emitted_is_absorbed() {
     }
 }
 
-/// The same of the lamp alone, from two random points in each of very many cells of every face: what leaves a point is ρ E/π, by 256 paths side by side; the light, which
+/// The same of the lamp alone, from two random points in each of very many cells of every face: what leaves a point is ρ E/π, by paths side by side; the light, which
 /// reflects nothing, gets what comes from where cosine directions lead.
 #[test]
 fn what_the_lamp_emits_is_absorbed() {
-    const PATHS: usize = 256;
     // a cell is all light or has none, and all cube or has none
     let side = 128;
-    let scene = Scene { wall_albedo: 0.5, cube_albedo: 0.4, light_half_width: 1.0, ..Scene::default() };
+    let scene = Scene { wall_albedo: 0.4, cube_albedo: 0.3, light_half_width: 1.0, ..Scene::default() };
     let truth = PI * scene.radiance * 4.0;
-    for (seed, (bounces, way)) in (526..).zip([(All(0.6), WAYS[0]), (UpTo(18), WAYS[1])]) {
+    for (seed, (bounces, way, paths_a_point)) in
+        (526..).zip([(All(0.6), WAYS[0], 320), (UpTo(12), WAYS[1], 256)])
+    {
+        let n = paths_a_point as f64;
         let absorbed = |at: [f64; 3], rng: &mut Stream| {
             if let Ok(room) = BoxRoom::new(Scene { point: at, ..scene }) {
-                let mut draws = [0.0; PATHS];
+                let mut draws = vec![0.0; paths_a_point];
                 let albedo = room.albedo(&room.point());
                 Paths::new(room, bounces, way.0, way.1).unwrap().fill(rng, &mut draws);
-                return (1.0 / albedo - 1.0) * PI * draws.iter().sum::<f64>() / PATHS as f64;
+                return (1.0 / albedo - 1.0) * PI * draws.iter().sum::<f64>() / n;
             }
             let (light, all) = (Vertex::at(at).unwrap(), paths(scene, bounces, way));
             let mut sum = 0.0;
-            for _ in 0..PATHS / 4 {
+            for _ in 0..64 {
                 let from = nearest_hit(&light, light.to_room(&Cosine.sample(rng))).unwrap();
                 sum += PI * all.light_from(&from, rng);
             }
-            sum / (PATHS / 4) as f64
+            sum / 64.0
         };
         let faces = Face::ALL.into_iter().flat_map(|face| (0..side).map(move |row| (face, row)));
         let rows: Vec<[f64; 2]> = faces
@@ -813,9 +838,9 @@ fn what_the_lamp_emits_is_absorbed() {
             })
             .collect();
         let [sum, squares] = rows.iter().fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
-        // what more than 18 bounces would leave is below ½ to the nineteenth power
+        // what more than 12 bounces would leave is below 0.4¹³
         let found = Found { mean: sum, std_error: squares.sqrt() };
-        found.assert(truth, 2e-6 * truth, 1e-3, &format!("the lamp's, {bounces:?} {way:?}"));
+        found.assert(truth, 7e-6 * truth, 1e-3, &format!("the lamp's, {bounces:?} {way:?}"));
     }
 }
 
@@ -849,9 +874,9 @@ fn all_ways_agree() {
     ways_agree(scene, &[Exactly(2)], 1100, None);
     ways_agree(scene, &[Exactly(3)], 1200, None);
     ways_agree(scene, &[UpTo(3)], 1300, None);
-    let shadow = Scene { cube_albedo: 0.5, point: [0.7, 0.1, 0.0], ..scene };
-    // what more than 16 bounces would leave is below 0.4⁹·0.5⁸
-    ways_agree(shadow, &[All(0.75), AllByWeight, UpTo(16)], 1400, None);
+    let shadow = Scene { wall_albedo: 0.3, cube_albedo: 0.5, point: [0.7, 0.1, 0.0], ..scene };
+    // what more than 12 bounces would leave is below 0.3⁷·0.5⁶ = 4e-6, as the cube does not see itself
+    ways_agree(shadow, &[All(0.6), AllByWeight, UpTo(12)], 1400, None);
 }
 
 fn ways_agree(scene: Scene, group: &[Bounces], seed: u64, truth: Option<f64>) {
