@@ -868,12 +868,13 @@ fn all_ways_agree() {
         radiance: 2.0,
         point: [0.5, 0.1, 0.4],
     };
-    // nothing hides the light here, and what is not light emits
-    let p = seen(&room(scene).point(), 1.7);
-    ways_agree(scene, &[Exactly(1)], 1000, Some(0.7 * (2.0 * p + 1.0 - p)));
+    // here most of what arrives is the lamp's: nothing hides it, and what is not light emits 1
+    let top = Scene { radiance: 4.0, point: [0.2, 0.1, 1.0], ..scene };
+    let p = seen(&room(top).point(), 1.7);
+    ways_agree(top, &[Exactly(1)], 1000, Some(0.7 * (4.0 * p + 1.0 - p)));
     ways_agree(scene, &[Exactly(2)], 1100, None);
     ways_agree(scene, &[Exactly(3)], 1200, None);
-    ways_agree(scene, &[UpTo(3)], 1300, None);
+    ways_agree(top, &[UpTo(3)], 1300, None);
     let shadow = Scene { wall_albedo: 0.3, cube_albedo: 0.5, point: [0.7, 0.1, 0.0], ..scene };
     // what more than 12 bounces would leave is below 0.3⁷·0.5⁶ = 4e-6, as the cube does not see itself
     ways_agree(shadow, &[All(0.6), AllByWeight, UpTo(12)], 1400, None);
