@@ -5,8 +5,8 @@
 //! of very many cells where it has jumps, whose differences give the error bar. Such a bar, and that of plain draws, may be missed by 8 std errors (1.2e-15, two-sided); a
 //! bias of 11 is caught in all runs but one in a thousand. Every comparison with an error bar prints the bias that it would catch, and fails if that is more than 1e-3 of the truth:
 //! direct light, shadows, two bounces (the light sampled or found by chance; paths one by one and side by side), the furnace without a limit, the balance of energy (faces that emit, and the lamp
-//! alone), the worksheet's cumulative values, and every way against all others together, whose error is part of the 1e-3. What roulette ends is seen as a part of all light, what p itself emits included. About 120 comparisons:
-//! 1.5e-13 a run. With `UNBIASED_MUTATION` the cumulative values catch 5e-3.
+//! alone), the worksheet's cumulative values, and every way against all others together, whose error is part of the 1e-3. What roulette ends is seen as a part of all light, what p itself emits included. About 100 comparisons:
+//! 1.2e-13 a run. With `UNBIASED_MUTATION` the cumulative values catch 5e-3.
 
 mod common;
 
