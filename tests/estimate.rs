@@ -169,3 +169,22 @@ proptest! {
         prop_assert!((estimate.variance().unwrap() / variance - 1.0).abs() <= 1e-13);
     }
 }
+
+/// z = (mean − truth)/std error, and 0 for a difference that is rounding: up to 8 units of the truth's last place, whatever its size.
+#[test]
+fn z_counts_std_errors_beyond_rounding() {
+    let estimate = Estimate::from_draws(&[1.0, 2.0, 3.0, 4.0]);
+    let std_error = (5.0_f64 / 12.0).sqrt();
+    for truth in [2.0, 3.25, -7.0] {
+        let z = estimate.z(truth).unwrap();
+        assert!((z * std_error - (2.5 - truth)).abs() <= 1e-14, "{z}");
+    }
+    for truth in [1e-200, 1e-3, 1.0, 1e3, -1e200] {
+        let off =
+            |ulps: f64| Estimate::from_draws(&[truth * (1.0 + ulps * f64::EPSILON); 3]).z(truth).unwrap();
+        assert_eq!(off(0.0), 0.0);
+        assert_eq!(off(7.0), 0.0, "{truth:e}");
+        assert_eq!(off(9.0), f64::INFINITY.copysign(truth), "{truth:e}");
+        assert_eq!(off(-9.0), f64::INFINITY.copysign(-truth), "{truth:e}");
+    }
+}
