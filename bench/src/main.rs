@@ -93,7 +93,7 @@ fn ours(best: &mut Best) {
     let room = BoxRoom::new(Scene::default()).unwrap();
     for most in BOUNCES {
         let paths = Paths::new(room, Bounces::UpTo(most), Hemisphere::Cosine, FindLight::BySampling).unwrap();
-        let single = paths.in_f32();
+        let single = paths.in_f32().unwrap();
         let estimators: [(&str, &dyn Estimator); 2] = [("f64", &paths), ("f32", &single)];
         for (name, estimator) in estimators {
             for _ in 0..8 {
