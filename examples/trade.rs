@@ -189,7 +189,7 @@ fn precisions(trade: impl Fn(f64) -> Result<Trade>) -> Result<Comparison> {
     let truth = room.one_bounce() + room.two_bounces().unwrap_or(f64::NAN);
     let paths = Paths::new(room, Bounces::UpTo(2), Cosine, FindLight::BySampling)?;
     let rivals = [
-        Rival::new("f32, many at a time", paths.in_f32()),
+        Rival::new("f32, many at a time", paths.in_f32()?),
         Rival::new("f64, many at a time", paths),
         Rival::new("f64, one path after the other", from_fn(move |rng| paths.draw(rng))),
     ];

@@ -27,7 +27,7 @@
 use glam::DVec3;
 use rand::distr::Distribution;
 
-use crate::box_room::{BoxRoom, Vertex, nearest};
+use crate::box_room::{BoxRoom, Face, Vertex, nearest};
 use crate::density::Density;
 use crate::error::{Result, require, require_count};
 use crate::hemisphere::{Direction, Hemisphere};
@@ -140,7 +140,7 @@ impl Paths {
             }
             Bounces::AllByWeight => {
                 let albedo = most_albedo(&room);
-                let allowed = "at most 0.999 where nothing but absorption ends a path (or choose a q)";
+                let allowed = "at most 0.999 where nothing but absorption ends a path (or choose a q or a number of bounces)";
                 require("the largest albedo", albedo, albedo <= MOST_ALBEDO, allowed)?;
                 ([0, u32::MAX], Ending::ByWeight)
             }
@@ -153,6 +153,13 @@ impl Paths {
     /// Its mean is off by rounding, and by the coarser grid k·2⁻²⁴ of its uniform numbers. In the sheet's scene no such bias was seen: with cosine directions and the light sampled it is 0 ± 7e-7 of
     /// the light of one bounce in 10⁹ paths, and 0 ± 1.6e-5 of that of up to fifteen in 1.5·10⁸.
     ///
+    /// Radiances of any size that a scene allows are scaled on the way. What cannot be scaled is what lies between the strongest part of the light and the
+    /// weakest.
+    ///
+    /// # Errors
+    /// If a path's weight would leave `f32`: if the smallest albedo but 0 is below 1e-25 to the power of the fewest bounces that count (two, if fewer do and so many may); or if the faces emit
+    /// less than 1e-10 of L_e A/π, or of L_e where light is found by chance.
+    ///
     /// ```
     /// use unbiased::box_room::{BoxRoom, Scene};
     /// use unbiased::hemisphere::Hemisphere;
@@ -161,28 +168,87 @@ impl Paths {
     ///
     /// let room = BoxRoom::new(Scene::default())?;
     /// let once = Paths::new(room, Bounces::Exactly(1), Hemisphere::Cosine, FindLight::BySampling)?;
-    /// let found = estimate(&once.in_f32(), Budget::Draws(100_000), 1)?;
+    /// let found = estimate(&once.in_f32()?, Budget::Draws(100_000), 1)?;
     /// assert!(found.z(0.2728543591976926).unwrap().abs() < 5.0);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
-    pub fn in_f32(self) -> PathsF32 {
-        PathsF32(self)
+    pub fn in_f32(self) -> Result<PathsF32> {
+        let scene = self.room.scene();
+        let albedos = [scene.wall_albedo, scene.cube_albedo].into_iter().filter(|albedo| *albedo > 0.0);
+        let [fewest, most] = self.counted;
+        // at most 64
+        let bounces = fewest.max(most.min(2)) as i32;
+        let weight = albedos.fold(1.0, f64::min).powi(bounces);
+        let allowed = "at least 1e-25 in single precision";
+        require("the least albedo, to the power of the bounces,", weight, weight >= 1e-25, allowed)?;
+        let part = scene.emission / self.light();
+        let ok = part == 0.0 || part.is_nan() || part >= 1e-10;
+        let allowed = "0 or at least 1e-10 in single precision";
+        require("the faces' emission, in parts of the light's,", part, ok, allowed)?;
+        Ok(PathsF32(self))
+    }
+
+    /// Whether the light is found by sampling it.
+    fn samples_light(&self) -> bool {
+        self.light == FindLight::BySampling && self.room.scene().light_half_width > 0.0
+    }
+
+    /// What a path of weight 1 finds where it finds the light, but for the geometry of a sample.
+    fn light(&self) -> f64 {
+        match self.light {
+            FindLight::BySampling => power(&self.room),
+            FindLight::ByChance if self.room.scene().light_half_width > 0.0 => self.room.scene().radiance,
+            FindLight::ByChance => 0.0,
+        }
+    }
+
+    /// A power of two of the size of the light and of what the faces emit: divided by it, both are in reach of `f32`, and no bit is lost.
+    fn scale(&self) -> f64 {
+        let exponent = self.light().max(self.room.scene().emission).to_bits() & (0x7ff << 52);
+        if exponent == 0 { 1.0 } else { f64::from_bits(exponent) }
     }
 
     /// The scene.
+    ///
+    /// ```
+    /// # use unbiased::box_room::{BoxRoom, Scene};
+    /// # use unbiased::hemisphere::Hemisphere;
+    /// # use unbiased::paths::{Bounces, FindLight, Paths};
+    /// let room = BoxRoom::new(Scene::default())?;
+    /// let paths = Paths::new(room, Bounces::UpTo(3), Hemisphere::Cosine, FindLight::BySampling)?;
+    /// assert_eq!((*paths.room(), paths.most_bounces()), (room, 3));
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
     pub fn room(&self) -> &BoxRoom {
         &self.room
     }
 
-    /// The most bounces that are counted.
+    /// The most bounces that are counted, `u32::MAX` without a limit.
     pub fn most_bounces(&self) -> u32 {
         self.counted[1]
     }
 
-    /// Why the variance may be infinite, if it may: its error bars are then not to be trusted.
+    /// Why error bars are not to be trusted, if they are not: the variance may be infinite, or so few paths hold most of it that a run of a million does not meet them.
     ///
     /// A path's squared weight grows by E\[(ρ cos θ/(π p(ω)))²\]/q a bounce, times the q of going on: ρ²/q with cosine directions, (4/3)ρ²/q with uniform ones. It must
     /// stay below 1 for the largest albedo ρ to be safe. And light samples near the light's edge have an infinite variance where the light touches a wall.
+    ///
+    /// An error bar from n draws has itself a relative error of about √(κ/4n), with κ = E X⁴/(E X²)². A weight made of k uniform directions has
+    /// κ = ((16/5)/(4/3)²)ᵏ = (9/5)ᵏ, whatever the albedo, and light that one path in m finds by chance m times that. From κ = 10⁶ on it is told; in so many draws or fewer, error bars are
+    /// mostly too short. For a sum up to K bounces κ is at most (Σ (16/5)^(k/4) ρᵏ)⁴/(E X²)², and by chance m is estimated from the light's part of all faces.
+    /// Samples of a light at the distance a from the walls, taken from there, have κ of about 8/a³: with c, d and y the way down, across and along, E Xⁿ is in proportion to
+    /// ∫ (cd)ⁿ/(c² + d² + y²)²ⁿ over d > a, 0.131/a for n = 2 and 0.00112/a⁵ for n = 4.
+    ///
+    /// ```
+    /// # use unbiased::box_room::{BoxRoom, Scene};
+    /// # use unbiased::hemisphere::Hemisphere;
+    /// # use unbiased::paths::{Bounces, FindLight, Paths};
+    /// let room = BoxRoom::new(Scene::default())?;
+    /// let by = |directions| Paths::new(room, Bounces::Exactly(64), directions, FindLight::BySampling);
+    /// assert_eq!(by(Hemisphere::Cosine)?.caution(), None);
+    /// assert!(by(Hemisphere::Uniform)?.caution().unwrap().ends_with("of fewer than about 1e16 draws means nothing"));
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
     pub fn caution(&self) -> Option<String> {
         let albedo = most_albedo(&self.room);
         let (spread, shown) = match self.directions {
@@ -190,31 +256,112 @@ impl Paths {
             Hemisphere::Uniform => (4.0 / 3.0, "(4/3)ρ²"),
         };
         let growth = spread * albedo * albedo;
-        let q = match self.ending {
-            Ending::Never => None,
-            Ending::Roulette(roulette) => Some(roulette.p_rr()),
-            // cosine's weights never exceed 1 then, and uniform ones grow while they do
-            Ending::ByWeight => (self.directions == Hemisphere::Uniform).then_some(1.0),
-        };
+        let infinite = "the variance may be infinite, and the error bar too short:";
         let touches = self.room.scene().light_half_width >= 2.0 && self.light == FindLight::BySampling;
-        match q {
-            Some(q) if q <= growth => Some(format!(
-                "the variance may be infinite, and the error bar too short: q = {q} is not above {shown} = {growth:.4} for the largest albedo"
-            )),
-            _ if touches && self.counted[1] > 1 => Some(
-                "the variance may be infinite, and the error bar too short: the light touches the walls, where its samples weigh without bound".into(),
-            ),
-            _ => None,
+        match self.ending {
+            Ending::Roulette(roulette) if roulette.p_rr() <= growth => {
+                let q = roulette.p_rr();
+                return Some(format!(
+                    "{infinite} q = {q} is not above {shown} = {growth:.4} for the largest albedo"
+                ));
+            }
+            // cosine's weights never exceed 1 then, and uniform ones grow while they do
+            Ending::ByWeight if self.directions == Hemisphere::Uniform && growth >= 1.0 => {
+                return Some(format!(
+                    "{infinite} the squared weight of a path grows by {shown} = {growth:.4} a bounce for the largest albedo, and nothing ends a path of weight 1 or more"
+                ));
+            }
+            _ => {}
         }
+        if touches && self.counted[1] > 1 {
+            return Some(format!(
+                "{infinite} the light touches the walls, where its samples weigh without bound"
+            ));
+        }
+        let reasons = [
+            (
+                self.kurtosis_of_weights(),
+                "uniform directions make most weights far too small and a few very large",
+            ),
+            (1.0 / self.found_by_chance(), "few paths find the light"),
+            (
+                self.kurtosis_of_samples(),
+                "the light is so near the walls that a few of its samples outweigh all others",
+            ),
+        ];
+        let draws: f64 = reasons.iter().map(|(kurtosis, _)| kurtosis).product();
+        // what adds no digit is no reason
+        let told: Vec<&str> =
+            reasons.iter().filter(|(kurtosis, _)| *kurtosis >= 10.0).map(|(_, reason)| *reason).collect();
+        (draws >= A_MILLION).then(|| {
+            let why = told.join(", and ");
+            format!("{why}, so that the error bar of fewer than about {draws:.0e} draws means nothing")
+        })
     }
 
-    /// An unbiased estimate of the light that leaves `vertex`, along one random path: L̂_o(p_j) to plug in for [`reflected`].
+    /// E X⁴/(E X²)² of a light sample at a vertex of a wall, roughly, where the light comes near it.
+    fn kurtosis_of_samples(&self) -> f64 {
+        let beside = Face::ROOM_HALF_WIDTH - self.room.scene().light_half_width;
+        // farther away it is the whole of the light that counts, not its edge
+        let near = self.light == FindLight::BySampling && self.counted[1] > 1 && beside < 0.5;
+        if near { 8.0 / beside.powi(3) } else { 1.0 }
+    }
+
+    /// E X⁴/(E X²)² of what a path that is never ended finds, or more, in a room where every vertex sees the same light.
+    fn kurtosis_of_weights(&self) -> f64 {
+        if self.ending != Ending::Never || self.directions == Hemisphere::Cosine {
+            return 1.0;
+        }
+        let albedo = most_albedo(&self.room);
+        // light that is sampled needs a direction less
+        let less = u32::from(self.samples_light() && self.room.scene().emission == 0.0);
+        let [fewest, most] = self.counted.map(|bounces| bounces.saturating_sub(less) as i32);
+        // relative to the term of the fewest, as only their ratios count
+        let sum = |factor: f64| {
+            let terms = (fewest..=most).map(|k| albedo.powi(k - fewest) * factor.powf(f64::from(k)));
+            terms.fold([0.0, 0.0], |[sum, squares], term| [sum + term, squares + term * term])
+        };
+        // ‖ΣX‖₄ ≤ Σ ‖X‖₄; E (ΣX)² is at least Σ E X² and at least (Σ E X)²
+        let ([fourth, _], [mean, _], [_, square]) =
+            (sum(3.2f64.powf(0.25)), sum(1.0), sum((4.0f64 / 3.0).sqrt()));
+        let ratio = fourth * fourth / square.max(mean * mean);
+        ratio * ratio
+    }
+
+    /// The part of the paths that find the light by chance, roughly: a bounce after the other, the light's part of all faces.
+    fn found_by_chance(&self) -> f64 {
+        let scene = self.room.scene();
+        let dark = scene.light_half_width == 0.0 || scene.emission > 0.0 || self.counted[1] == 0;
+        if self.light == FindLight::BySampling || dark {
+            return 1.0;
+        }
+        let [fewest, most] = self.counted;
+        let area: f64 = Face::ALL.iter().map(|face| face.area()).sum();
+        let bounces = f64::from(most - fewest.max(1).min(most)) + 1.0;
+        (self.room.light_area() / area * bounces).min(1.0)
+    }
+
+    /// An unbiased estimate of the radiance that leaves `vertex`, in W m⁻² sr⁻¹, along one random path: L̂_o(p_j) to plug in for [`reflected`], which has an example.
     #[inline]
     pub fn light_from(&self, vertex: &Vertex, rng: &mut Stream) -> f64 {
         self.walk(vertex, rng, |_| ())
     }
 
     /// One path with its vertices, for drawing: the same that [`draw`](Estimator::draw) takes from the same stream.
+    ///
+    /// ```
+    /// # use unbiased::box_room::{BoxRoom, Scene};
+    /// # use unbiased::hemisphere::Hemisphere;
+    /// # use unbiased::paths::{Bounces, FindLight, Paths};
+    /// # use unbiased::{Estimator, Stream};
+    /// let room = BoxRoom::new(Scene::default())?;
+    /// let twice = Paths::new(room, Bounces::Exactly(2), Hemisphere::Cosine, FindLight::BySampling)?;
+    /// let path = twice.trace(&mut Stream::new(1, 0));
+    /// // p and p_j; from p_j a point of the light is looked for
+    /// assert_eq!((path.vertices[0], path.vertices.len(), path.samples[0].from), (room.point(), 2, 1));
+    /// assert_eq!(path.light, twice.draw(&mut Stream::new(1, 0)));
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
     pub fn trace(&self, rng: &mut Stream) -> Path {
         let mut path = Path { vertices: Vec::new(), samples: Vec::new(), light: 0.0 };
         path.light = self.walk(&self.room.point(), rng, |event| match event {
@@ -230,7 +377,7 @@ impl Paths {
     #[inline]
     fn walk(&self, start: &Vertex, rng: &mut Stream, mut see: impl FnMut(Event<'_>)) -> f64 {
         let [fewest, most] = self.counted;
-        let sampled = self.light == FindLight::BySampling && self.room.scene().light_half_width > 0.0;
+        let sampled = self.samples_light();
         // once the light was sampled for the last time, only what the faces emit is left to be found
         let last = if sampled && self.room.scene().emission == 0.0 { most.saturating_sub(1) } else { most };
         let (mut vertex, mut weight, mut light, mut bounces) = (*start, 1.0, 0.0, 0);
@@ -337,6 +484,14 @@ impl Estimator for PathsF32 {
 }
 
 const Q: &str = "the continuation probability q";
+
+/// Draws that a run has, or that one has time for.
+const A_MILLION: f64 = 1e6;
+
+/// L_e A/π, what a sample of the light weighs but for cos θ cos θ′/r² and the albedo.
+fn power(room: &BoxRoom) -> f64 {
+    room.scene().radiance * room.light_area() * std::f64::consts::FRAC_1_PI
+}
 
 fn most_albedo(room: &BoxRoom) -> f64 {
     room.scene().wall_albedo.max(room.scene().cube_albedo)

@@ -731,6 +731,17 @@ fn degenerate_polygons_fill_nothing() {
     // all of the sky, but for what is hidden behind its own edge
     let all = rectangle([-1e9, 1e9], [-1e9, 1e9], 1.0);
     assert!((form_factor(&all, DVec3::ZERO, DVec3::Z) - 1.0).abs() <= 1e-15);
+    // coordinates whose differences leave f64
+    for (half, z) in [(1.7e308, 1e308), (f64::MAX, f64::MAX), (f64::MAX, 1e300)] {
+        let exact = 4.0 * howell_parallel(half / z, half / z, 1.0);
+        let given = form_factor(&rectangle([-half, half], [-half, half], z), DVec3::ZERO, DVec3::Z);
+        assert!((given - exact).abs() <= 2e-15, "{half}: {given} for {exact}");
+        // from a point as far below the origin, and off to the side
+        let given =
+            form_factor(&rectangle([0.0, half], [-half, half], z), DVec3::new(-half, 0.0, -z), DVec3::Z);
+        let exact = 2.0 * (howell_parallel(half, half / 2.0, z) - howell_parallel(half / 2.0, half / 2.0, z));
+        assert!((given - exact).abs() <= 2e-15, "{half}: {given} for {exact}");
+    }
     // coordinates whose squares leave f64
     for scale in [1e-300, 1e-170, 1e160, 1e300] {
         let square = rectangle([-scale, scale], [-scale, scale], scale);
@@ -740,12 +751,44 @@ fn degenerate_polygons_fill_nothing() {
     }
 }
 
+/// A normal of any length is that direction; what is not finite, or no direction, has no P.
+#[test]
+fn normals_have_a_direction_and_points_are_finite() {
+    let square = rectangle([-1.0, 2.0], [-0.5, 1.5], 1.25);
+    for n in [DVec3::Z, DVec3::new(0.6, 0.0, 0.8), DVec3::new(-0.48, 0.64, 0.6)] {
+        let p = form_factor(&square, DVec3::ZERO, n);
+        for length in [2.0, 0.3, 5e-324, 1e-200, 1e200, 1.7e308] {
+            let n = if length == 5e-324 { DVec3::Z * length } else { n * length };
+            let p = if length == 5e-324 { form_factor(&square, DVec3::ZERO, DVec3::Z) } else { p };
+            let given = form_factor(&square, DVec3::ZERO, n);
+            assert!((given - p).abs() <= 1e-15, "{n} {given} {p}");
+        }
+    }
+    assert!(form_factor(&square, DVec3::ZERO, DVec3::ZERO).is_nan());
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for axis in DVec3::AXES {
+            let mut corners = square;
+            corners[2] += axis * bad;
+            assert!(form_factor(&corners, DVec3::ZERO, DVec3::Z).is_nan());
+            assert!(form_factor(&square, axis * bad, DVec3::Z).is_nan());
+            assert!(form_factor(&square, DVec3::ZERO, axis * bad).is_nan());
+            assert!(form_factor(&[], axis * bad, DVec3::Z).is_nan());
+            // nothing is seen there, from above the cube's height or below
+            for from in [[0.0, 0.0, 1.0], [1.5, 0.0, 0.0], [2.0, 0.3, 3.0]] {
+                let from = Vertex::at(from).unwrap();
+                assert!(!visible(&from, DVec3::new(0.0, 0.0, 4.0) + axis * bad));
+                assert_eq!(nearest_hit(&from, axis * bad), None);
+            }
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(common::config(20_000))]
 
     #[test]
     fn form_factors_of_anything_finite_are_in_range(
-        corners in prop::collection::vec(prop::array::uniform3(numbers().prop_filter("finite", |x| x.abs() < 1e307)), 0..6),
+        corners in prop::collection::vec(prop::array::uniform3(numbers().prop_filter("finite", |x| x.is_finite())), 0..6),
         point in prop::array::uniform3(-2.0..2.0),
         up in 0..3usize,
     ) {
@@ -778,6 +821,72 @@ fn direct_light_is_the_worksheets() {
     let room = BoxRoom::new(Scene { light_half_width: 2.0, ..Scene::default() }).unwrap();
     for point in [[2.0, 0.3, 4.0], [2.0, 2.0, 4.0], [1.0, 1.0, 4.0]] {
         assert_eq!(room.direct(&Vertex::at(point).unwrap()), 0.0);
+    }
+}
+
+/// Lights up to the whole ceiling, p in the middle of the cube's top, in its corner, and elsewhere: half-width, p's x and y, and the part of two bounces for albedos and a radiance
+/// of 1, by tests/data/two_bounces.py.
+const TWO_BOUNCES: [(f64, [f64; 2], f64); 27] = [
+    (0.5, [0.0, 0.0], 0.009975980387042279),
+    (0.5, [0.5, -0.5], 0.010152748997395585),
+    (0.5, [0.21, -0.43], 0.010068077054039933),
+    (1.0, [0.0, 0.0], 0.040567707679614804),
+    (1.0, [0.5, -0.5], 0.04108240469256288),
+    (1.0, [0.21, -0.43], 0.040843442089380256),
+    (1.2, [0.0, 0.0], 0.058769683842531318),
+    (1.2, [0.5, -0.5], 0.05934669907600761),
+    (1.2, [0.21, -0.43], 0.059087113901419767),
+    (1.5, [0.0, 0.0], 0.092172326066653306),
+    (1.5, [0.5, -0.5], 0.092605801718764196),
+    (1.5, [0.21, -0.43], 0.092440486490090728),
+    (1.9, [0.0, 0.0], 0.145252452823966264),
+    (1.9, [0.5, -0.5], 0.144781679166209066),
+    (1.9, [0.21, -0.43], 0.145113869978267033),
+    (1.99, [0.0, 0.0], 0.157539550596856411),
+    (1.99, [0.5, -0.5], 0.156743593260245248),
+    (1.99, [0.21, -0.43], 0.157250497448360718),
+    (1.999, [0.0, 0.0], 0.158738475194193826),
+    (1.999, [0.5, -0.5], 0.157908922336847623),
+    (1.999, [0.21, -0.43], 0.158433805505638651),
+    (1.999999, [0.0, 0.0], 0.158870742028913175),
+    (1.999999, [0.5, -0.5], 0.158037476387899969),
+    (1.999999, [0.21, -0.43], 0.158564345417137392),
+    (2.0, [0.0, 0.0], 0.158870874296065122),
+    (2.0, [0.5, -0.5], 0.158037604943371936),
+    (2.0, [0.21, -0.43], 0.158564475957737283),
+];
+
+/// Also where the light comes within a micrometre of the walls, and where it touches them.
+#[test]
+fn two_bounces_are_known_to_1e_12() {
+    let of = |light_half_width, [x, y]: [f64; 2]| {
+        let point = [x, y, 1.0];
+        let scene = Scene {
+            wall_albedo: 1.0,
+            cube_albedo: 1.0,
+            radiance: 1.0,
+            light_half_width,
+            point,
+            ..Scene::default()
+        };
+        BoxRoom::new(scene).unwrap().two_bounces().unwrap()
+    };
+    let mut worst = 0.0f64;
+    for (h, at, exact) in TWO_BOUNCES {
+        let off = (of(h, at) / exact - 1.0).abs();
+        println!("h = {h} at {at:?}: {off:.1e}");
+        worst = worst.max(off);
+    }
+    assert!(worst <= 1e-12, "{worst:e}");
+    // no jump where the cells change, or where they can be no smaller; L₂ rises by 0.13 of itself a metre at the end, and by 1.6 or less elsewhere
+    let steps = [0.9999999999, 1.0, 1.0000000001, 1.0000000002];
+    let last = [1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 0.0].map(|d| 2.0 - d);
+    for h in [&steps[..], &last[..]] {
+        for pair in h.windows(2) {
+            let (one, other) = (of(pair[0], [0.1, 0.3]), of(pair[1], [0.1, 0.3]));
+            let off = (other / one - 1.0).abs();
+            assert!(off <= 3.0 * (pair[1] - pair[0]) + 1e-12, "{pair:?}: {off:e}");
+        }
     }
 }
 
@@ -815,27 +924,44 @@ fn bad_scenes_are_errors() {
         says(Scene { wall_albedo: value, ..scene }, &format!("the walls' {rest}"));
         says(Scene { cube_albedo: value, ..scene }, &format!("the cube's {rest}"));
     }
-    for (value, shown) in [(-1.0, "-1"), (f64::INFINITY, "inf"), (f64::NAN, "NaN")] {
-        let rest = format!("must be 0 or positive, and finite, not {shown}");
+    let beyond = 1e100f64.next_up().to_string();
+    let below = 1e-100f64.next_down().to_string();
+    for (value, shown) in [
+        (-1.0, "-1"),
+        (f64::INFINITY, "inf"),
+        (f64::NAN, "NaN"),
+        (1e100f64.next_up(), &beyond),
+        (1e-100f64.next_down(), &below),
+    ] {
+        let rest = format!("must be 0, or from 1e-100 to 1e100, not {shown}");
         says(Scene { radiance: value, ..scene }, &format!("the light's radiance {rest}"));
         says(Scene { emission: value, ..scene }, &format!("the faces' emission {rest}"));
     }
-    for (value, shown) in [(2.0000000000000004, "2.0000000000000004"), (-0.5, "-0.5"), (f64::NAN, "NaN")] {
-        let rest = format!("must be from 0 (no light) to 2 (all of the ceiling), not {shown}");
+    let narrow = 1e-50f64.next_down().to_string();
+    for (value, shown) in [
+        (2.0000000000000004, "2.0000000000000004"),
+        (-0.5, "-0.5"),
+        (f64::NAN, "NaN"),
+        (1e-50f64.next_down(), &narrow),
+    ] {
+        let rest = format!("must be 0 (no light), or from 1e-50 to 2 (all of the ceiling), not {shown}");
         says(Scene { light_half_width: value, ..scene }, &format!("the light's half-width {rest}"));
     }
+    let no_face = "lies on no face: it must lie on the room's (|x| = 2, |y| = 2, z = 0 or z = 4) or on the cube's (|x| = 0.5 or |y| = 0.5 up to z = 1, or z = 1 within)";
+    let under = "lies under the cube: on the floor, |x| or |y| must be at least 0.5";
+    let light = "lies on the light, which reflects nothing: on the ceiling, |x| or |y| must be above the light's half-width";
     let points = [
-        ([0.0, 0.0, 1.5], "(0, 0, 1.5) lies on no face of the room or the cube"),
-        ([0.0, 0.0, 0.5], "(0, 0, 0.5) lies on no face of the room or the cube"),
-        ([2.5, 0.0, 0.0], "(2.5, 0, 0) lies on no face of the room or the cube"),
-        ([0.0, f64::NAN, 1.0], "(0, NaN, 1) lies on no face of the room or the cube"),
-        ([0.0, f64::INFINITY, 1.0], "(0, inf, 1) lies on no face of the room or the cube"),
-        ([0.0, 0.25, 0.0], "(0, 0.25, 0) lies under the cube"),
-        ([0.0, 0.25, 4.0], "(0, 0.25, 4) lies on the light, which reflects nothing"),
-        ([0.5, 0.5, 4.0], "(0.5, 0.5, 4) lies on the light, which reflects nothing"),
+        ([0.0, 0.0, 1.5], "(0, 0, 1.5)", no_face),
+        ([0.0, 0.0, 0.5], "(0, 0, 0.5)", no_face),
+        ([2.5, 0.0, 0.0], "(2.5, 0, 0)", no_face),
+        ([0.0, f64::NAN, 1.0], "(0, NaN, 1)", no_face),
+        ([0.0, f64::INFINITY, 1.0], "(0, inf, 1)", no_face),
+        ([0.0, 0.25, 0.0], "(0, 0.25, 0)", under),
+        ([0.0, 0.25, 4.0], "(0, 0.25, 4)", light),
+        ([0.5, 0.5, 4.0], "(0.5, 0.5, 4)", light),
     ];
-    for (point, rest) in points {
-        says(Scene { point, ..scene }, &format!("the point {rest}"));
+    for (point, at, reason) in points {
+        says(Scene { point, ..scene }, &format!("the point {at} {reason}"));
     }
     // the ends of what is allowed
     let ends = Scene {
@@ -843,8 +969,11 @@ fn bad_scenes_are_errors() {
         cube_albedo: 0.0,
         radiance: 0.0,
         light_half_width: 2.0,
-        emission: 1e300,
+        emission: 1e100,
         point: [2.0, 2.0, 0.0],
     };
     assert!(BoxRoom::new(ends).is_ok());
+    assert!(
+        BoxRoom::new(Scene { radiance: 1e-100, light_half_width: 1e-50, emission: -0.0, ..ends }).is_ok()
+    );
 }

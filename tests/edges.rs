@@ -8,12 +8,15 @@ mod common;
 use std::f64::consts::{PI, TAU};
 
 use common::{Stuck, config};
+use glam::DVec3;
 use proptest::prelude::*;
 use proptest::sample::select;
 use rand::distr::Distribution;
+use unbiased::box_room::{BoxRoom, Face, Scene, Vertex, form_factor, nearest_hit, visible};
 use unbiased::hemisphere::{Direction, Hemisphere};
 use unbiased::inversion::{Exponential, Inversion};
 use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
+use unbiased::paths::{Bounces, FindLight, Paths};
 use unbiased::rectangle::{Integrand, Rectangle};
 use unbiased::roulette::{LightModel, Roulette};
 use unbiased::{Budget, Error, Estimate, Estimator, Run, Stream, estimate, from_fn, ratio};
@@ -306,6 +309,171 @@ proptest! {
             Ok(estimate) => prop_assert!(value.is_finite() && estimate.mean() == value),
             Err(Error::Draw { value: draw, draw: 0, block: 0, .. }) => prop_assert!(!value.is_finite() && !draw.is_finite()),
             Err(other) => prop_assert!(false, "{other}"),
+        }
+    }
+}
+
+// ---- the box room ----
+
+fn any_point() -> impl Strategy<Value = [f64; 3]> {
+    let on_a_face = (select(Face::ALL.to_vec()), probability(), probability(), probability());
+    let on_a_face = on_a_face.prop_map(|(face, u, v, w)| {
+        let [low, high] = face.bounds();
+        // the far end as it is, not to rounding
+        (low + (high - low) * DVec3::new(u, v, w)).min(high).to_array()
+    });
+    prop_oneof![4 => on_a_face, 1 => prop::array::uniform3(any_number())]
+}
+
+/// Any bits, or a number that is allowed.
+fn mostly(allowed: impl Strategy<Value = f64> + 'static) -> impl Strategy<Value = f64> {
+    prop_oneof![9 => allowed, 1 => any_number()]
+}
+
+/// 0, or anything from 1e-100 to 1e100.
+fn radiance() -> impl Strategy<Value = f64> {
+    mostly(prop_oneof![
+        1 => select(vec![0.0, -0.0, 1e-100, 1e100]),
+        3 => (-100.0..100.0f64).prop_map(|power| 10f64.powf(power)),
+    ])
+}
+
+fn any_scene() -> impl Strategy<Value = Scene> {
+    let half_width = mostly(prop_oneof![
+        0.0..=2.0f64,
+        (-50.0..0.3f64).prop_map(|power| 10f64.powf(power)),
+        select(vec![0.0, 1e-50, 2.0, 2f64.next_down()]),
+    ]);
+    let numbers = (mostly(probability()), mostly(probability()), radiance(), half_width, radiance());
+    (numbers, any_point()).prop_map(|(numbers, point)| {
+        let (wall_albedo, cube_albedo, radiance, light_half_width, emission) = numbers;
+        Scene { wall_albedo, cube_albedo, radiance, light_half_width, emission, point }
+    })
+}
+
+fn any_bounces() -> impl Strategy<Value = Bounces> {
+    let q = prop_oneof![probability(), any_number(), 0.0..1.0f64];
+    prop_oneof![
+        (0..70u32).prop_map(Bounces::Exactly),
+        (0..70u32).prop_map(Bounces::UpTo),
+        q.prop_map(Bounces::All),
+        Just(Bounces::AllByWeight),
+        any::<u32>().prop_map(Bounces::UpTo),
+    ]
+}
+
+fn is_a_radiance(value: f64) -> bool {
+    value == 0.0 || (1e-100..=1e100).contains(&value)
+}
+
+proptest! {
+    #![proptest_config(config(1_500))]
+
+    /// A scene of any bits is an error that is true, or a room in which every draw of every way is a number, in `f32` too.
+    #[test]
+    fn any_scene_is_lit_or_an_error(
+        scene in any_scene(), bounces in any_bounces(), seed in any::<u64>(),
+        directions in select(Hemisphere::ALL.to_vec()), light in select(FindLight::ALL.to_vec())
+    ) {
+        let sound = [scene.wall_albedo, scene.cube_albedo].iter().all(|albedo| (0.0..=1.0).contains(albedo))
+            && is_a_radiance(scene.radiance)
+            && is_a_radiance(scene.emission)
+            && (scene.light_half_width == 0.0 || (1e-50..=2.0).contains(&scene.light_half_width));
+        let room = match BoxRoom::new(scene) {
+            Ok(room) => room,
+            Err(Error::Parameter { .. }) => {
+                prop_assert!(!sound);
+                return Ok(());
+            }
+            Err(Error::Point { .. }) => {
+                // a face's own points are its own, but for the light's and those under the cube
+                let [x, y, z] = scene.point;
+                let faces = Face::ALL.iter().filter(|face| {
+                    let [low, high] = face.bounds();
+                    DVec3::from_array(scene.point).cmpge(low).all() && DVec3::from_array(scene.point).cmple(high).all()
+                });
+                let hole = if z == 0.0 { 0.5 } else { scene.light_half_width };
+                prop_assert!(sound && (faces.count() == 0 || x.abs().max(y.abs()) <= hole));
+                return Ok(());
+            }
+            Err(other) => return Err(TestCaseError::fail(format!("{other}"))),
+        };
+        prop_assert!(sound);
+        let p = room.point();
+        let most = scene.radiance * room.albedo(&p);
+        for known in [room.direct(&p), room.one_bounce()] {
+            prop_assert!((0.0..=most).contains(&known), "{known:?} of {scene:?}");
+        }
+        prop_assert!(room.one_bounce() <= room.direct(&p));
+        // where the rule's cells shrink it takes its time
+        if scene.light_half_width < 1.0 {
+            let two = room.two_bounces();
+            prop_assert_eq!(two.is_some(), p.face() == Face::CubeTop);
+            prop_assert!(two.is_none_or(|two| (0.0..=most * scene.wall_albedo).contains(&two)), "{two:?} of {scene:?}");
+        }
+        let paths = match Paths::new(room, bounces, directions, light) {
+            Ok(paths) => paths,
+            Err(Error::Count { value, .. }) => {
+                prop_assert!(value > 64);
+                return Ok(());
+            }
+            Err(Error::Parameter { value, .. }) => {
+                match bounces {
+                    Bounces::All(q) => prop_assert!(!(q > 0.0 && q <= 0.9999)),
+                    Bounces::AllByWeight => prop_assert!(value > 0.999),
+                    other => prop_assert!(false, "{other:?}"),
+                }
+                return Ok(());
+            }
+            Err(other) => return Err(TestCaseError::fail(format!("{other}"))),
+        };
+        prop_assert!(paths.caution().is_none_or(|caution| !caution.contains("NaN") && !caution.contains("inf ")), "{:?}", paths.caution());
+        let mut rng = Stream::new(seed, 0);
+        let mut draws = [f64::NAN; 40];
+        paths.fill(&mut rng, &mut draws);
+        let drawn: Vec<f64> = (0..4).map(|_| paths.draw(&mut rng)).collect();
+        prop_assert!(draws.iter().chain(&drawn).all(|draw| *draw >= 0.0 && draw.is_finite()), "{draws:?} {drawn:?} of {paths:?}");
+        match paths.in_f32() {
+            Ok(single) => {
+                let mut in_f32 = [f64::NAN; 40];
+                single.fill(&mut rng, &mut in_f32);
+                prop_assert!(in_f32.iter().all(|draw| *draw >= 0.0 && draw.is_finite()), "{in_f32:?} of {single:?}");
+                // where every draw finds something, it does in f32
+                let always = |draws: &[f64]| draws.iter().all(|draw| *draw > 0.0);
+                prop_assert!(!always(&draws) || in_f32.iter().any(|draw| *draw > 0.0), "{in_f32:?} of {single:?}");
+            }
+            Err(Error::Parameter { .. }) => {}
+            Err(other) => return Err(TestCaseError::fail(format!("{other}"))),
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(config(20_000))]
+
+    /// From a point of any bits to a point of any bits, and through a polygon of any bits.
+    #[test]
+    fn any_ray_ends_on_a_face_or_has_no_direction(
+        point in any_point(), way in prop::array::uniform3(any_number()), to in any_point(),
+        corners in prop::collection::vec(prop::array::uniform3(any_number()), 0..6)
+    ) {
+        let Ok(from) = Vertex::at(point) else { return Ok(()) };
+        let direction = DVec3::from_array(way);
+        match nearest_hit(&from, direction) {
+            Some(hit) => {
+                prop_assert!(direction.is_finite() && from.normal().dot(direction) >= 0.0);
+                let [low, high] = hit.face().bounds();
+                prop_assert!(hit.position().cmpge(low).all() && hit.position().cmple(high).all(), "{hit:?}");
+            }
+            None => prop_assert!(!direction.is_finite() || direction == DVec3::ZERO || !(from.normal().dot(direction) >= 0.0)),
+        }
+        let to = DVec3::from_array(to);
+        prop_assert!(to.is_finite() || !visible(&from, to));
+        let corners: Vec<DVec3> = corners.into_iter().map(DVec3::from_array).collect();
+        for (corners, normal) in [(&corners[..], from.normal()), (&corners[..], direction), (&[][..], direction)] {
+            let p = form_factor(corners, from.position(), normal);
+            let sound = corners.iter().all(|corner| corner.is_finite()) && normal.is_finite() && normal != DVec3::ZERO;
+            prop_assert!(if sound { (0.0..=1.0).contains(&p) } else { p.is_nan() }, "{p:?} of {corners:?}");
         }
     }
 }

@@ -34,7 +34,7 @@ fn filled(bencher: Bencher, name: &str) {
 
 #[divan::bench(args = BOUNCES)]
 fn filled_in_f32(bencher: Bencher, name: &str) {
-    let (paths, mut rng) = (paths(name).in_f32(), Stream::new(1, 0));
+    let (paths, mut rng) = (paths(name).in_f32().unwrap(), Stream::new(1, 0));
     bencher.bench_local(|| sum_of_filled(&paths, &mut rng, 1));
 }
 

@@ -114,7 +114,7 @@ fn ours(best: &mut Best) {
     let room = BoxRoom::new(Scene::default()).unwrap();
     for most in BOUNCES {
         let paths = Paths::new(room, Bounces::UpTo(most), Hemisphere::Cosine, FindLight::BySampling).unwrap();
-        let single = paths.in_f32();
+        let single = paths.in_f32().unwrap();
         let plain = from_fn(|rng| paths.draw(rng));
         let estimators: [(&str, &dyn Estimator, u64); 3] =
             [("f64", &paths, 1 << 20), ("f32", &single, 1 << 20), ("plain", &plain, 1 << 18)];

@@ -58,12 +58,29 @@ impl Face {
     ];
 
     /// Whether it belongs to the cube.
+    ///
+    /// ```
+    /// use unbiased::box_room::Face;
+    ///
+    /// let (cube, room): (Vec<Face>, Vec<Face>) = Face::ALL.into_iter().partition(|face| face.is_cube());
+    /// assert_eq!((cube.len(), room.len()), (5, 6));
+    /// assert_eq!(cube.iter().map(|face| face.area()).sum::<f64>(), 5.0);
+    /// ```
     #[inline]
     pub fn is_cube(self) -> bool {
         self as u8 <= Self::CubeNorth as u8
     }
 
     /// The normal, which points into the room and away from the cube.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use unbiased::box_room::Face;
+    ///
+    /// assert_eq!((Face::CubeTop.normal(), Face::Ceiling.normal()), (DVec3::Z, DVec3::NEG_Z));
+    /// let [low, high] = Face::CubeTop.bounds();
+    /// assert_eq!([low, high], [DVec3::new(-0.5, -0.5, 1.0), DVec3::new(0.5, 0.5, 1.0)]);
+    /// ```
     #[inline]
     pub fn normal(self) -> DVec3 {
         self.frame()[2]
@@ -76,13 +93,13 @@ impl Face {
         &FRAMES[self as usize % FRAMES.len()]
     }
 
-    /// The smallest and the largest coordinates of its points. The floor's are those of the whole square, with what the cube stands on.
+    /// The smallest and the largest coordinates of its points, in metres; [`normal`](Self::normal) has an example. The floor's are those of the whole square, with what the cube stands on.
     #[inline]
     pub fn bounds(self) -> [DVec3; 2] {
         BOUNDS[self as usize % BOUNDS.len()]
     }
 
-    /// The area in m²: the floor's without what the cube stands on, the ceiling's with the light.
+    /// The area in m², as in the example of [`is_cube`](Self::is_cube): the floor's without what the cube stands on, the ceiling's with the light.
     pub fn area(self) -> f64 {
         match self {
             Self::Floor => 15.0,
@@ -150,6 +167,15 @@ impl Vertex {
     ///
     /// # Errors
     /// If no face is there, or only the part of the floor that the cube stands on.
+    ///
+    /// ```
+    /// use unbiased::box_room::{Face, Vertex};
+    ///
+    /// assert_eq!(Vertex::at([2.0, 2.0, 3.0])?.face(), Face::East);
+    /// let error = Vertex::at([0.0, 0.25, 0.0]).unwrap_err();
+    /// assert_eq!(error.to_string(), "the point (0, 0.25, 0) lies under the cube: on the floor, |x| or |y| must be at least 0.5");
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
     pub fn at(point: [f64; 3]) -> Result<Self> {
         let position = DVec3::from_array(point);
         let contains = |face: &Face| {
@@ -157,9 +183,11 @@ impl Vertex {
             position.cmpge(low).all() && position.cmple(high).all()
         };
         match Face::ALL.into_iter().find(contains) {
-            Some(Face::Floor) if under_the_cube(position) => Err(off(point, "lies under the cube")),
+            Some(Face::Floor) if under_the_cube(position) => {
+                Err(off(point, "lies under the cube: on the floor, |x| or |y| must be at least 0.5"))
+            }
             Some(face) => Ok(Self { position, face }),
-            None => Err(off(point, "lies on no face of the room or the cube")),
+            None => Err(off(point, NO_FACE)),
         }
     }
 
@@ -187,6 +215,16 @@ impl Vertex {
     }
 
     /// A direction above this point's face, given in the face's own frame with z along the normal, in the room's coordinates.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use unbiased::box_room::Vertex;
+    /// use unbiased::hemisphere::Direction;
+    ///
+    /// let east = Vertex::at([2.0, 0.3, 3.0])?;
+    /// assert_eq!(east.to_room(&Direction::new(0.0, 0.0, 1.0)?), DVec3::NEG_X);
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
     #[inline]
     pub fn to_room(&self, direction: &Direction) -> DVec3 {
         let [tangent, other, normal] = self.face.frame();
@@ -194,6 +232,8 @@ impl Vertex {
         *tangent * local.x + *other * local.y + *normal * local.z
     }
 }
+
+const NO_FACE: &str = "lies on no face: it must lie on the room's (|x| = 2, |y| = 2, z = 0 or z = 4) or on the cube's (|x| = 0.5 or |y| = 0.5 up to z = 1, or z = 1 within)";
 
 fn under_the_cube(position: DVec3) -> bool {
     position.x.abs().max(position.y.abs()) < Face::CUBE_HALF_WIDTH

@@ -7,11 +7,12 @@ use glam::DVec3;
 /// The part P of the cosine-weighted hemisphere above `point` that a plane polygon fills: P = |Σ Θᵢ Γᵢ·n|/(2π), in \[0, 1\].
 ///
 /// Θᵢ is the angle between the directions vᵢ, vᵢ₊₁ to neighbouring corners and Γᵢ the unit vector of vᵢ × vᵢ₊₁ (Lambert, *Photometria*, 1760; Baum, Rushmeier
-/// & Winget 1989). What lies below the horizon of `normal`, a unit vector, is cut off. A diffuse surface of albedo ρ reflects ρ L_e P of a light of radiance L_e of this shape
+/// & Winget 1989). What lies below the horizon of `normal`, of any length, is cut off. A diffuse surface of albedo ρ reflects ρ L_e P of a light of radiance L_e of this shape
 /// (worksheet 4); one draw that looks for it along a cosine-distributed direction has variance (ρ L_e)² P(1 − P).
 ///
 /// The corners follow each other around the polygon, in either sense. P is 0 for fewer than three of them, and where `point` lies in the polygon's plane: it is
-/// seen edge on, from its boundary, too. It is P to a few ulp however small the polygon, as long as it is not much longer than wide.
+/// seen edge on, from its boundary, too. It is P to a few ulp however small the polygon, and however large, as long as it is not much longer than wide. It is NaN
+/// where it has no meaning: if a coordinate is NaN or infinite, or the normal has no length.
 ///
 /// ```
 /// use glam::DVec3;
@@ -24,6 +25,13 @@ use glam::DVec3;
 /// assert!((seen - exact).abs() < 1e-15);
 /// ```
 pub fn form_factor(corners: &[DVec3], point: DVec3, normal: DVec3) -> f64 {
+    let steepest = normal.abs().max_element();
+    let finite = corners.iter().all(|corner| corner.is_finite()) && point.is_finite() && normal.is_finite();
+    if !finite || steepest == 0.0 {
+        return f64::NAN;
+    }
+    // a unit vector keeps its bits
+    let normal = if normal.length_squared() == 1.0 { normal } else { (normal / steepest).normalize() };
     let (origin, corners) = above_horizon(corners, point, normal);
     let Some(own_first) = corners.first().copied() else { return 0.0 };
     let first = origin + own_first;
@@ -78,6 +86,11 @@ fn angle_excess(sin: f64, cos: f64) -> f64 {
 /// 1974). Their differences are taken before anything else, as a small polygon's are exact then. P does not depend on the unit of length: it is the largest
 /// coordinate here, so that no square leaves `f64`.
 fn above_horizon(corners: &[DVec3], point: DVec3, normal: DVec3) -> (DVec3, Vec<DVec3>) {
+    // a quarter of what is so large that a difference might overflow
+    let far = corners.iter().chain([&point]).any(|corner| corner.abs().max_element() > 0.25 * f64::MAX);
+    let scale = if far { 0.25 } else { 1.0 };
+    let (corners, point) = (corners.iter().map(|corner| *corner * scale), point * scale);
+    let corners: Vec<DVec3> = corners.collect();
     let Some(first) = corners.first().copied() else { return (DVec3::ZERO, Vec::new()) };
     let unit = corners.iter().map(|corner| (*corner - point).abs().max_element()).fold(0.0, f64::max);
     let origin = (first - point) / unit;

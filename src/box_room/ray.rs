@@ -48,7 +48,7 @@ pub(crate) fn nearest(origin: DVec3, direction: DVec3) -> Vertex {
     ray.at(distance, face)
 }
 
-/// Whether the cube leaves the view from `from` to a point of the room free. It may be touched.
+/// Whether the cube leaves the view from `from` to a point of the room free. It may be touched. A point that is not finite is not seen.
 ///
 /// ```
 /// use glam::DVec3;
@@ -61,6 +61,12 @@ pub(crate) fn nearest(origin: DVec3, direction: DVec3) -> Vertex {
 /// ```
 #[inline]
 pub fn visible(from: &Vertex, to: DVec3) -> bool {
+    to.is_finite() && sees(from, to)
+}
+
+/// The same for a point that is known to be finite.
+#[inline]
+pub(crate) fn sees(from: &Vertex, to: DVec3) -> bool {
     let origin = from.position();
     if origin.z.min(to.z) >= Face::CUBE_HEIGHT {
         return true; // quickly, for most

@@ -4,11 +4,9 @@
 //! others 0, and the coordinate on that axis is set exactly, as in the plain loop. A path that has ended goes on with weight 0, until so many have that it pays to move
 //! the others together.
 
-use std::f64::consts::FRAC_1_PI;
-
 use pulp::NullaryFnOnce;
 
-use super::{Ending, FindLight, Paths};
+use super::{Ending, Paths, power};
 use crate::box_room::{BoxRoom, Face};
 use crate::fast::{Real, widest};
 use crate::hemisphere::Hemisphere;
@@ -52,6 +50,8 @@ struct Walk<'a, T> {
     sampled: bool,
     /// The most rays of a path.
     last: u32,
+    /// What all light is divided by on the way: [`Paths::scale`].
+    scale: f64,
 }
 
 impl<'a, T: Real> Walk<'a, T> {
@@ -62,15 +62,16 @@ impl<'a, T: Real> Walk<'a, T> {
         let emitted = if fewest == 0 { paths.room.emitted(&start) } else { 0.0 };
         let albedo = paths.room.albedo(&start);
         let scene = paths.room.scene();
-        let sampled = paths.light == FindLight::BySampling && scene.light_half_width > 0.0;
+        let (sampled, scale) = (paths.samples_light(), paths.scale());
         Self {
             paths,
-            room: Room::new(&paths.room),
-            start: [at.x, at.y, at.z, normal.x, normal.y, normal.z, albedo, 1.0, emitted]
+            room: Room::new(&paths.room, scale),
+            start: [at.x, at.y, at.z, normal.x, normal.y, normal.z, albedo, 1.0, emitted / scale]
                 .map(|number| [T::of(number); LANES]),
             sampled,
             // as in the plain loop: nothing is left to be found after the last sample but what the faces emit
             last: if sampled && scene.emission == 0.0 { most.saturating_sub(1) } else { most },
+            scale,
         }
     }
 
@@ -98,7 +99,7 @@ impl<'a, T: Real> Walk<'a, T> {
         }
         let light = rows.iter().flat_map(|row| &row[LIGHT]);
         for (draw, light) in draws.iter_mut().zip(light) {
-            *draw = light.to_f64();
+            *draw = light.to_f64() * self.scale;
         }
     }
 
@@ -127,7 +128,7 @@ impl<'a, T: Real> Walk<'a, T> {
                 if row[WEIGHT][lane] == T::of(0.0)
                     && let Some(draw) = own[lane].take()
                 {
-                    *draw = row[LIGHT][lane].to_f64();
+                    *draw = row[LIGHT][lane].to_f64() * self.scale;
                     own[lane] = draws.next();
                     if own[lane].is_some() {
                         for (numbers, start) in row.iter_mut().zip(&self.start) {
@@ -168,7 +169,8 @@ impl<T: Real> Walk<'_, T> {
         widest(Weigh { rows, pairs, lanes: LANES, directions });
         let [row] = &mut *rows;
         let q = match self.paths.ending {
-            Ending::Roulette(roulette) => Some(on_the_grid(T::of(roulette.p_rr()))),
+            // a q below `T`'s range is on the grid's first point, too
+            Ending::Roulette(roulette) => Some(on_the_grid(T::of(roulette.p_rr()).most(T::STEP))),
             _ => None,
         };
         widest(End { weight: &mut row[WEIGHT], coins, q, lanes: LANES });
@@ -199,22 +201,22 @@ struct Room<T> {
     radiance: T,
     emission: T,
     half_width: T,
-    /// L_e A/π
+    /// L_e A/π: [`Paths::power`]
     power: T,
 }
 
 impl<T: Real> Room<T> {
-    fn new(room: &BoxRoom) -> Self {
+    fn new(room: &BoxRoom, scale: f64) -> Self {
         let scene = room.scene();
         // without a light none is met: no coordinate is below −1
         let half_width = if scene.light_half_width > 0.0 { scene.light_half_width } else { -1.0 };
         Self {
             wall_albedo: T::of(scene.wall_albedo),
             cube_albedo: T::of(scene.cube_albedo),
-            radiance: T::of(scene.radiance),
-            emission: T::of(scene.emission),
+            radiance: T::of(scene.radiance / scale),
+            emission: T::of(scene.emission / scale),
             half_width: T::of(half_width),
-            power: T::of(scene.radiance * room.light_area() * FRAC_1_PI),
+            power: T::of(power(room) / scale),
         }
     }
 
@@ -535,6 +537,7 @@ mod tests {
     use crate::box_room::Scene;
     use crate::fast::tests::both;
     use crate::paths::Bounces;
+    use crate::paths::FindLight;
     use crate::run::Estimator;
 
     fn every_way(mut see: impl FnMut(Paths)) {
@@ -617,7 +620,7 @@ mod tests {
                 let [wide, narrow] = both(|| {
                     let (mut rng, mut draws) = (Stream::new(seed, 1), [0.0; 300]);
                     if single {
-                        paths.in_f32().fill(&mut rng, &mut draws);
+                        paths.in_f32().unwrap().fill(&mut rng, &mut draws);
                     } else {
                         paths.fill(&mut rng, &mut draws);
                     }

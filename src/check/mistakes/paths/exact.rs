@@ -11,7 +11,7 @@ use crate::box_room::exact::{over_the_walls, seen};
 use crate::box_room::{BoxRoom, Face, form_factor, nearest};
 use crate::hemisphere::Hemisphere;
 
-/// The widest light whose two-bounce part the rules below integrate to 1e-10.
+/// The widest light whose two-bounce part is known to 1e-10 for the wrong estimators, too: what they find is integrated over the light as well, from points of the walls near it.
 const WIDEST: f64 = 1.0;
 
 /// Whether the light after k bounces is known exactly (by quadrature: to 1e-10).
