@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 use crate::estimate::Estimate;
 use crate::figure::Figure;
 use crate::run::Outcome;
-use crate::trade::{Comparison, Measured, Nature};
+use crate::trade::{Comparison, duration, two_digits};
 use crate::workbook::Table;
 
 /// How a value looks in a notebook.
@@ -188,29 +188,26 @@ impl Show for Table {
     }
 }
 
-/// What a second bought each rival on one core of this machine, and when it reaches an error.
+/// What a second bought each rival on one core of this machine, when it reaches an error, and what to mind: those without bias by rank, then the biased ones.
 impl Show for Comparison {
     fn show(&self) -> Shown {
-        let ranks: Vec<(&Measured, f64)> =
-            self.ranking().iter().map(|place| (place.rival, place.of_the_best)).collect();
-        let rows = self.rivals.iter().map(|rival| {
-            let share =
-                ranks.iter().find(|(ranked, _)| std::ptr::eq(*ranked, rival)).map(|(_, share)| *share);
-            let to = |error| rival.seconds_to(error).map_or("never".into(), duration);
-            let efficiency = match rival.nature {
-                Nature::InfiniteVariance => "infinite variance".into(),
-                Nature::Biased => {
-                    format!("bias {} %", two_digits(100.0 * rival.bias() / rival.truth)).replace('-', "−")
-                }
-                Nature::Unbiased => share.map_or(String::new(), two_digits),
+        let relative = self.truth != 0.0;
+        let rows = self.remarked().into_iter().map(|(rival, place, remark)| {
+            let to = |error| rival.seconds_to(error).to_string();
+            let after = rival.rmse(1.0) / self.scale();
+            let after = match after {
+                error if error.is_infinite() => "∞".into(),
+                error if relative => format!("{} %", two_digits(100.0 * error)),
+                error => two_digits(error),
             };
-            let error = format!("{} %", two_digits(100.0 * rival.rmse(1.0) / rival.truth.abs()));
-            let error = error.replace("∞ %", "∞");
-            vec![rival.name.clone(), duration(rival.seconds), error, to(1e-3), to(1e-4), efficiency]
+            let efficiency = place.map_or(String::new(), |place| two_digits(place.of_the_best));
+            vec![rival.name.clone(), duration(rival.seconds), after, to(1e-3), to(1e-4), efficiency, remark]
         });
+        let [to_3, to_4] =
+            if relative { ["to 0.1 %", "to 0.01 %"] } else { ["to 10⁻³ (absolute)", "to 10⁻⁴"] };
         Table {
             caption: "What a second buys, on one core of the machine that ran this".into(),
-            columns: vec!["estimator", "a draw", "error after 1 s", "to 0.1 %", "to 0.01 %", "efficiency"],
+            columns: vec!["estimator", "a draw", "error after 1 s", to_3, to_4, "efficiency", "remark"],
             rows: rows.collect(),
         }
         .show()
@@ -348,28 +345,6 @@ fn said(good: Option<bool>, sentence: &str) -> Markup {
         None => ("?", "#888888"),
     };
     html! { div style=(format!("border-left: 4px solid {colour}; padding-left: 0.6em")) { b { (mark) } " " (sentence) } }
-}
-
-/// Seconds, in the unit that suits them.
-fn duration(seconds: f64) -> String {
-    let (factor, unit) = match seconds {
-        s if s < 1e-6 => (1e9, "ns"),
-        s if s < 1e-3 => (1e6, "µs"),
-        s if s < 1.0 => (1e3, "ms"),
-        _ => (1.0, "s"),
-    };
-    format!("{} {unit}", two_digits(factor * seconds))
-}
-
-/// Two significant digits, or all of a whole number.
-fn two_digits(x: f64) -> String {
-    if x.is_infinite() {
-        return "∞".into();
-    }
-    let places = (1.0 - x.abs().log10().floor()).clamp(0.0, 9.0);
-    // 0 has no first digit
-    let places = if x == 0.0 { 0 } else { places as usize };
-    format!("{x:.places$}")
 }
 
 /// Decimal places that show two digits of an error.

@@ -1,0 +1,298 @@
+//! Draws and time of one rival, in batches whose spread is the error of its variance and of its time.
+
+use std::time::{Duration, Instant};
+
+use super::{Measured, Rival, Trade};
+use crate::error::Result;
+use crate::estimate::Estimate;
+use crate::run::{Cost, Estimator, walk_block};
+
+/// Batches a rival: one is the median of their times, and two are its quartiles.
+pub(super) const COUNT: u64 = 17;
+
+/// The time of this many batches goes into warming up: 1 + ½ + ¼ + … of one for finding its length, and three for making sure of it.
+const WARM: u64 = 4;
+
+/// Draws a batch: two have a variance.
+const FEWEST: u64 = 2;
+const MOST: u64 = 1 << 40;
+
+/// What one batch of draws gave and took.
+struct Batch {
+    estimate: Estimate,
+    least: f64,
+    most: f64,
+    cost: Cost,
+    elapsed: Duration,
+}
+
+impl Batch {
+    fn take(estimator: &dyn Estimator, seed: u64, block: u64, draws: u64) -> Result<Self> {
+        let (mut estimate, mut least, mut most) = (Estimate::new(), f64::INFINITY, f64::NEG_INFINITY);
+        let start = Instant::now();
+        let cost = walk_block(estimator, seed, block, draws, |slice| {
+            estimate.extend_from_slice(slice);
+            least = slice.iter().copied().fold(least, f64::min);
+            most = slice.iter().copied().fold(most, f64::max);
+            Ok(())
+        })?;
+        Ok(Self { estimate, least, most, cost, elapsed: start.elapsed() })
+    }
+}
+
+/// The batches of one rival.
+pub(super) struct Batches {
+    draws: u64,
+    taken: Vec<Batch>,
+}
+
+impl Batches {
+    /// Draws to warm up, until it is known how many fill a batch.
+    pub fn warm_up(estimator: &dyn Estimator, seed: u64, seconds: f64) -> Result<Self> {
+        // blocks that no batch uses
+        let time = |draws| Ok(Batch::take(estimator, seed, u64::MAX, draws)?.elapsed.as_secs_f64());
+        let draws = draws_that_take(seconds / (COUNT + WARM) as f64, time)?;
+        Ok(Self { draws, taken: Vec::new() })
+    }
+
+    pub fn take(&mut self, estimator: &dyn Estimator, seed: u64, batch: u64) -> Result<()> {
+        self.taken.push(Batch::take(estimator, seed, batch, self.draws)?);
+        Ok(())
+    }
+
+    pub fn measured(&self, rival: &Rival<'_>, trade: &Trade) -> Measured {
+        let mut all = Estimate::new();
+        let (mut variances, mut cost) = (Estimate::new(), Cost::default());
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for batch in &self.taken {
+            all.merge(&batch.estimate);
+            variances.push(batch.estimate.variance().unwrap_or(0.0));
+            least = least.min(batch.least);
+            most = most.max(batch.most);
+            cost.evaluations += batch.cost.evaluations;
+            cost.random_numbers += batch.cost.random_numbers;
+        }
+        let draws = all.draws() as f64;
+        let furthest = (most - all.mean()).abs().max((all.mean() - least).abs());
+        let mut times: Vec<f64> =
+            self.taken.iter().map(|batch| batch.elapsed.as_secs_f64() / self.draws as f64).collect();
+        times.sort_by(f64::total_cmp);
+        let quartile = |k: usize| times.get(k * times.len() / 4).copied().unwrap_or(f64::NAN);
+        Measured {
+            name: rival.name.clone(),
+            series: rival.series.clone(),
+            nature: rival.nature,
+            estimate: all,
+            truth: trade.truth,
+            truth_error: trade.truth_error,
+            variance_error: variances.std_error().unwrap_or(f64::NAN),
+            heavy_tail: is_heavy(furthest, &all),
+            evaluations: cost.evaluations as f64 / draws,
+            random_numbers: cost.random_numbers as f64 / draws,
+            seconds: quartile(2),
+            seconds_range: [quartile(1), quartile(3)],
+        }
+    }
+}
+
+/// How many draws take `aim` seconds, by a clock that says how long so many take.
+///
+/// The batch that decides may have been interrupted, which would make all batches too short: it is repeated twice, and the shortest counts.
+fn draws_that_take(aim: f64, mut time: impl FnMut(u64) -> Result<f64>) -> Result<u64> {
+    let mut draws = FEWEST;
+    loop {
+        let mut taken = time(draws)?;
+        for _ in 0..2 {
+            if taken >= 0.5 * aim {
+                taken = taken.min(time(draws)?);
+            }
+        }
+        if taken >= 0.5 * aim || draws >= MOST {
+            let scaled = draws as f64 * aim / taken.max(1e-9);
+            return Ok((scaled as u64).clamp(FEWEST, MOST));
+        }
+        draws *= 2;
+    }
+}
+
+/// The probability of calling draws heavy whose tails are those of an exponential.
+const FALSE_ALARM: f64 = 1e-3;
+
+/// Whether the draw that lies `furthest` from the mean holds more of the sum of squares Σ (X − X̄)² than it would if the fourth moment were finite.
+///
+/// The share of the largest of n squares falls like 1/n but for a slowly growing factor. Two bounds, of which the larger counts:
+/// - ln²(n/p)/n, where the tails are no heavier than an exponential's: P(|X − μ| > xσ) ≤ e^(−x), so the largest of n lies beyond ln(n/p) σ with probability p at most;
+/// - 1/√n, where they fall like a power. If E\[X⁴\] is finite, n P((X − μ)² > σ²√n) → 0, so the share ends up below; if P(|X| > x) falls like x^(−α) with α < 4, the share
+///   falls like n^(2/α − 1), or not at all from α = 2 down, and ends up above.
+///
+/// Below 132 draws the first is more than 1: nothing is seen.
+fn is_heavy(furthest: f64, all: &Estimate) -> bool {
+    let draws = all.draws() as f64;
+    let Some(std_error) = all.std_error() else { return false };
+    if std_error == 0.0 {
+        return false;
+    }
+    // furthest²/(σ² n), with no square that might overflow
+    let share = (furthest / (std_error * draws)).powi(2);
+    share > ((draws / FALSE_ALARM).ln().powi(2) / draws).max(draws.sqrt().recip())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::Ordering::Relaxed;
+
+    use super::*;
+    use crate::box_room::{BoxRoom, Scene};
+    use crate::hemisphere::Hemisphere::{Cosine, Uniform};
+    use crate::inversion::Exponential;
+    use crate::lambertian::Lambertian;
+    use crate::paths::{Bounces, FindLight, Paths};
+    use crate::rectangle::{Integrand, Rectangle};
+    use crate::roulette::LightModel;
+    use crate::run::from_fn;
+
+    /// A clock for draws of `each` seconds, which stops for `stop` seconds at the calls named.
+    fn clock(each: f64, stop: f64, calls: &[u32]) -> impl FnMut(u64) -> Result<f64> {
+        let mut call = 0;
+        move |draws| {
+            call += 1;
+            Ok(draws as f64 * each + if calls.contains(&call) { stop } else { 0.0 })
+        }
+    }
+
+    #[test]
+    fn batches_last_as_long_as_asked_for() {
+        for (each, aim) in [(1e-9, 1e-3), (1e-6, 1e-3), (3e-7, 0.02), (1e-4, 0.25)] {
+            let draws = draws_that_take(aim, clock(each, 0.0, &[])).unwrap();
+            // a draw more or less
+            assert!((draws as f64 * each - aim).abs() <= 1.01 * each, "{each} {aim}: {draws}");
+        }
+    }
+
+    #[test]
+    fn warming_up_takes_the_time_of_four_batches() {
+        for each in [1e-9, 1.3e-9, 1.9e-9, 2.1e-6] {
+            let (mut ticking, mut all) = (clock(each, 0.0, &[]), 0.0);
+            let timed = |draws| {
+                let taken = ticking(draws)?;
+                all += taken;
+                Ok(taken)
+            };
+            draws_that_take(1e-3, timed).unwrap();
+            assert!(all <= WARM as f64 * 1e-3 && all >= 1e-3, "{each}: {all}");
+        }
+    }
+
+    /// An interruption of ten batches' time, wherever it falls, and two of them one after the other.
+    #[test]
+    fn an_interruption_makes_no_batch_short() {
+        for first in 1..=14 {
+            for calls in [[first, first], [first, first + 1]] {
+                let draws = draws_that_take(1e-3, clock(1e-6, 1e-2, &calls)).unwrap();
+                assert!((999..=1001).contains(&draws), "{calls:?}: {draws}");
+            }
+        }
+    }
+
+    #[test]
+    fn slow_draws_are_few_and_free_ones_are_not_without_end() {
+        let mut called = 0;
+        let slow = |draws| {
+            called += draws;
+            Ok(draws as f64)
+        };
+        assert_eq!(draws_that_take(1e-3, slow).unwrap(), 2);
+        assert_eq!(called, 6);
+        assert_eq!(draws_that_take(1e-3, |_| Ok(0.0)).unwrap(), MOST);
+    }
+
+    /// The ninth of seventeen times is their median, the fifth and the thirteenth their quartiles.
+    #[test]
+    fn times_are_medians_and_quartiles() {
+        let of = |k: u64| {
+            let estimate = Estimate::from_draws(&[k as f64, 2.0 * k as f64]);
+            let cost = Cost { random_numbers: 2, evaluations: 6 };
+            Batch {
+                estimate,
+                least: k as f64,
+                most: 2.0 * k as f64,
+                cost,
+                elapsed: Duration::from_micros(2 * k),
+            }
+        };
+        // in some order
+        let batches = Batches { draws: 2, taken: (0..COUNT).map(|k| of(1 + 5 * k % COUNT)).collect() };
+        let trade = Trade::new(1, 1.0).unwrap();
+        let found = batches.measured(&Rival::new("", from_fn(|_| 0.0)), &trade);
+        let micros = |seconds: f64| (1e6 * seconds).round();
+        assert_eq!(
+            [found.seconds_range[0], found.seconds, found.seconds_range[1]].map(micros),
+            [5.0, 9.0, 13.0]
+        );
+        assert_eq!((found.evaluations, found.random_numbers, found.estimate.draws()), (3.0, 1.0, 34));
+        // k²/2 is a batch's variance: its std error over the batches, by Σ k⁴ and Σ k²
+        let (fourths, squares) =
+            (1..=17).map(f64::from).fold((0.0, 0.0), |(a, b), k| (a + k.powi(4), b + k * k));
+        let variance: f64 = 0.25 * (fourths - squares * squares / 17.0) / 16.0;
+        assert!((found.variance_error - (variance / 17.0).sqrt()).abs() <= 1e-12);
+    }
+
+    /// How many of `tries` sets of n draws are called heavy.
+    fn alarms(tries: u64, n: u64, estimator: &dyn Estimator) -> u64 {
+        let heavy = |block| {
+            let batch = Batch::take(estimator, 11, block, n).unwrap();
+            is_heavy(
+                (batch.most - batch.estimate.mean()).max(batch.estimate.mean() - batch.least),
+                &batch.estimate,
+            )
+        };
+        (0..tries).filter(|block| heavy(*block)).count() as u64
+    }
+
+    /// Of draws with an exponential's tail one set in a thousand may be marked: more than 19 of 2,000 are with probability 1e-13. A threshold of 2 % marks all of them.
+    #[test]
+    fn light_tails_are_not_marked() {
+        let room = BoxRoom::new(Scene::default()).unwrap();
+        let by_weight = Paths::new(room, Bounces::AllByWeight, Cosine, FindLight::BySampling).unwrap();
+        assert!(alarms(2000, 1024, &Exponential::new(1.0).unwrap()) <= 19);
+        assert!(alarms(100, 1 << 14, &Exponential::new(1.0).unwrap()) <= 5);
+        assert!(alarms(500, 1024, &by_weight) <= 9);
+        // within 11 standard deviations: never
+        let cosine = Lambertian::new(0.8).unwrap().estimator(|w| w.cos_theta().powi(10), Uniform);
+        for n in [2, 100, 132, 1024, 1 << 14] {
+            assert_eq!(alarms(20, n, &from_fn(|rng| rng.uniform())), 0);
+            assert_eq!(alarms(20, n, &cosine), 0);
+        }
+        // all its squares in one draw, of 131 at most
+        let once = std::sync::atomic::AtomicU64::new(0);
+        let lonely = from_fn(|_| if once.fetch_add(1, Relaxed) == 5 { 1.0 } else { 0.0 });
+        assert_eq!(alarms(1, 131, &lonely), 0);
+        once.store(0, Relaxed);
+        assert_eq!(alarms(1, 200, &lonely), 1);
+    }
+
+    /// At 16,384 draws a tail P(X > x) ~ x⁻² is missed once in some 400 sets, so more than 5 of 50 are with probability 4e-9; heavier ones are missed less often. At 1,024 draws two
+    /// thirds are found, of 1/x (α = 1) 98 in a hundred. An average of 64² pairs has its tail behind a near-normal bulk: 1/r by all pairs is found once in 40 sets of 1,024, 15 times of 16,384,
+    /// and always of 262,144.
+    #[test]
+    fn infinite_variances_are_marked() {
+        let square = Rectangle::WORKSHEET;
+        let inverse = |x: f64, y: f64| Integrand::InverseDistance.at(x, y);
+        let model = LightModel::new(0.8, 0.5).unwrap();
+        let pareto = |alpha: f64| from_fn(move |rng| (1.0 - rng.uniform()).powf(-1.0 / alpha));
+        let heavy: [&dyn Estimator; 6] = [
+            &square.independent(inverse),
+            &model.roulette(0.2).unwrap(),
+            &model.roulette(0.5).unwrap(),
+            &pareto(1.0),
+            &pareto(1.5),
+            &pareto(2.0),
+        ];
+        for (index, estimator) in heavy.into_iter().enumerate() {
+            let found = alarms(50, 1 << 14, estimator);
+            assert!(found >= 45, "{index}: {found} of 50");
+        }
+        // of 100, 98.8 on average: fewer than 80 with a probability below 1e-20
+        assert!(alarms(100, 1024, &pareto(1.0)) >= 80);
+    }
+}

@@ -1,0 +1,119 @@
+//! What a comparison found, and in which order.
+
+use super::REAL;
+use super::measured::{Crossing, Measured, Nature};
+
+/// What a comparison found.
+///
+/// `{}` shows it as a table for people, [`csv`](Self::csv) and serde (as JSON, say) give the same for programs, and `figure::trade` draws it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// The seed of all draws.
+    pub seed: u64,
+    /// What was estimated.
+    pub truth: f64,
+    /// The truth's own std error; 0 where it is known.
+    pub truth_error: f64,
+    /// The rivals, in the order in which they were given.
+    pub rivals: Vec<Measured>,
+}
+
+/// A rival's place among those without bias.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place<'a> {
+    /// The rival.
+    pub rival: &'a Measured,
+    /// 1 + the number of rivals that are really better. Those of rank 1 are not told apart from the best.
+    pub rank: usize,
+    /// Its efficiency as a part of the best one's; where both have no variance, the best one's time as a part of its own.
+    pub of_the_best: f64,
+    /// Whether the one before is really better; true of the first.
+    pub set_apart: bool,
+}
+
+impl Comparison {
+    /// The rivals without bias by their efficiency 1/(σ² t), the best first: those without variance by their time, and those of infinite variance last.
+    ///
+    /// One is *really better* than another if ln(efficiency) differs by more than three of the difference's std errors, which are √(δσ²² + δt²) with the relative std errors of either's variance (by
+    /// the spread of the batches' variances) and time (of the median, by the quartiles). One with a heavy tail is never really better, for its variance may be larger than it looks.
+    ///
+    /// ```
+    /// use unbiased::from_fn;
+    /// use unbiased::trade::{Rival, Trade};
+    ///
+    /// let one = Rival::new("one", from_fn(|rng| rng.uniform()));
+    /// let same = Rival::new("the same", from_fn(|rng| rng.uniform()));
+    /// let late = Rival::new("a hundred, one of them used", from_fn(|rng| (0..100).map(|_| rng.uniform()).fold(0.0, |_, u| u)));
+    /// let found = Trade::new(1, 0.5)?.seconds_each(0.02)?.compare(&[one, same, late])?;
+    /// let ranking = found.ranking();
+    /// assert_eq!(ranking[0].rank, 1);
+    /// assert!(ranking[2].rival.name.starts_with("a hundred") && ranking[2].of_the_best < 0.5);
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    pub fn ranking(&self) -> Vec<Place<'_>> {
+        let mut order: Vec<&Measured> =
+            self.rivals.iter().filter(|rival| rival.nature != Nature::Biased).collect();
+        order.sort_by(|a, b| {
+            let by_time =
+                || if a.varies() { std::cmp::Ordering::Equal } else { a.seconds.total_cmp(&b.seconds) };
+            b.efficiency().total_cmp(&a.efficiency()).then_with(by_time)
+        });
+        let mut places: Vec<Place<'_>> = Vec::new();
+        for &rival in &order {
+            let better = order.iter().filter(|other| is_really_better(other, rival)).count();
+            let set_apart = places.last().is_none_or(|before| is_really_better(before.rival, rival));
+            let best = order.first().copied().unwrap_or(rival);
+            let of_the_best = match (best.varies(), rival.varies()) {
+                (true, true) if best.efficiency() > 0.0 => rival.efficiency() / best.efficiency(),
+                (false, false) => best.seconds / rival.seconds,
+                _ => 0.0,
+            };
+            places.push(Place { rival, rank: 1 + better, of_the_best, set_apart });
+        }
+        places
+    }
+
+    /// The slope of a rival's error against the points that it takes, ½ Δln σ²/Δln points, from that of its series that takes the fewest: −½ is what independent points
+    /// have. None of that one itself, of one in no series, and without a variance that is finite and more than rounding.
+    pub fn slope(&self, rival: &Measured) -> Option<f64> {
+        let ok = |one: &Measured| one.varies() && one.variance().is_finite() && one.evaluations > 0.0;
+        let siblings = self.rivals.iter().filter(|other| other.series == rival.series && ok(other));
+        let first = siblings.min_by(|a, b| a.evaluations.total_cmp(&b.evaluations))?;
+        let apart = rival.series.is_some() && ok(rival) && rival.evaluations > first.evaluations;
+        apart.then(|| {
+            0.5 * (rival.variance() / first.variance()).ln() / (rival.evaluations / first.evaluations).ln()
+        })
+    }
+
+    /// Where the most efficient of the unbiased ones overtakes a biased rival; None of any other.
+    pub fn crossing(&self, rival: &Measured) -> Option<Crossing> {
+        let ranking = self.ranking();
+        let best = ranking.iter().find(|place| place.rival.nature == Nature::Unbiased)?;
+        (rival.nature == Nature::Biased).then(|| rival.overtaken_at(best.rival))
+    }
+
+    /// The truth's size, and 1 where that is 0: what errors are relative to.
+    pub fn scale(&self) -> f64 {
+        if self.truth == 0.0 { 1.0 } else { self.truth.abs() }
+    }
+}
+
+/// Whether `a` is more efficient than `b` by more than noise.
+fn is_really_better(a: &Measured, b: &Measured) -> bool {
+    let infinite = |one: &Measured| one.nature == Nature::InfiniteVariance;
+    if infinite(a) || infinite(b) {
+        return !infinite(a);
+    }
+    match (a.varies(), b.varies()) {
+        _ if a.heavy_tail && a.varies() => false,
+        (true, true) => {
+            let lead = (a.efficiency() / b.efficiency()).ln();
+            lead > REAL * a.efficiency_error().hypot(b.efficiency_error())
+        }
+        (false, false) => {
+            let lead = (b.seconds / a.seconds).ln();
+            lead > REAL * a.time_error().hypot(b.time_error())
+        }
+        (a_varies, _) => !a_varies,
+    }
+}

@@ -1,0 +1,232 @@
+//! What was measured of one rival, and what follows from it.
+
+use serde::Serialize;
+
+use super::REAL;
+use super::batches::COUNT;
+use crate::estimate::Estimate;
+
+/// What is known of an estimator beforehand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Nature {
+    /// Its mean is the quantity.
+    Unbiased,
+    /// Its mean is something else.
+    Biased,
+    /// Its mean is the quantity, and its variance is infinite: no number of draws has an error bar to trust.
+    InfiniteVariance,
+}
+
+impl Nature {
+    /// `unbiased`, `biased` or `infinite_variance`
+    pub(super) fn key(self) -> &'static str {
+        match self {
+            Self::Unbiased => "unbiased",
+            Self::Biased => "biased",
+            Self::InfiniteVariance => "infinite_variance",
+        }
+    }
+}
+
+/// When an error is reached.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reach {
+    /// After so many seconds.
+    After(f64),
+    /// After so many seconds or later, or never: whether the bias is smaller than the error is not known.
+    AtLeast(f64),
+    /// Never: the bias is larger, or the variance is infinite.
+    Never,
+}
+
+impl Reach {
+    /// The seconds, if they are known.
+    pub fn seconds(self) -> Option<f64> {
+        match self {
+            Self::After(seconds) => Some(seconds),
+            Self::AtLeast(_) | Self::Never => None,
+        }
+    }
+}
+
+/// When one estimator becomes better than another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Crossing {
+    /// It is as good or better from the first second on.
+    FromTheStart,
+    /// It is worse at first, and better from here on.
+    At {
+        /// After so many seconds.
+        seconds: f64,
+        /// Both have this root mean square error then, in the truth's unit.
+        rmse: f64,
+    },
+    /// It is worse, and stays so.
+    Never,
+    /// That depends on a bias that is not seen, or on the other one's own.
+    Unknown,
+}
+
+/// What was measured of one rival; variance, work and time are those of one draw, which is a whole replicate where draws come in replicates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// Its name.
+    pub name: String,
+    /// The series that it belongs to.
+    pub series: Option<String>,
+    /// What it was declared to be.
+    pub nature: Nature,
+    /// What its draws gave.
+    pub estimate: Estimate,
+    /// What is estimated.
+    pub truth: f64,
+    /// The truth's own std error; 0 where it is known.
+    pub truth_error: f64,
+    /// The standard error of the variance, from batches, in the truth's unit squared.
+    pub variance_error: f64,
+    /// Whether a single draw of n holds more of the sum of squares Σ (X − X̄)² than ln²(1000 n)/n and 1/√n: the variance hangs on a few draws, its error bar is not to be
+    /// trusted, and it may be infinite.
+    ///
+    /// Of draws with tails no heavier than an exponential's, one set in a thousand is marked, or fewer; draws whose range is less than 11 standard deviations never are. A tail of infinite
+    /// variance is found the more surely the more draws there are, and none is below 132. See `tests/trade.rs` for how often.
+    pub heavy_tail: bool,
+    /// Evaluations of the integrand (or rays, or vertices) that a draw takes.
+    pub evaluations: f64,
+    /// Random numbers that a draw takes.
+    pub random_numbers: f64,
+    /// Seconds that a draw takes: the median of 17 batches.
+    pub seconds: f64,
+    /// The quartiles of that.
+    pub seconds_range: [f64; 2],
+}
+
+impl Measured {
+    /// The variance σ² of a draw, in the truth's unit squared: s² of the draws, and infinite where that was declared, whatever theirs is.
+    pub fn variance(&self) -> f64 {
+        match self.nature {
+            Nature::InfiniteVariance => f64::INFINITY,
+            Nature::Unbiased | Nature::Biased => self.estimate.variance().unwrap_or(f64::NAN),
+        }
+    }
+
+    /// The bias β, in the truth's unit: mean − truth of a biased rival, 0 of an unbiased one. It is measured, with an error of [`bias_error`](Self::bias_error).
+    pub fn bias(&self) -> f64 {
+        if self.nature == Nature::Biased { self.estimate.mean() - self.truth } else { 0.0 }
+    }
+
+    /// The standard error of the bias, √(σ²/n + τ²) with the truth's own std error τ; 0 of an unbiased rival.
+    pub fn bias_error(&self) -> f64 {
+        if self.nature == Nature::Biased {
+            self.estimate.std_error().unwrap_or(f64::INFINITY).hypot(self.truth_error)
+        } else {
+            0.0
+        }
+    }
+
+    /// Whether the bias is more than three of its std errors, and than rounding: of 370 rivals whose bias is 0, one looks like it. A bias that is not seen counts as none.
+    ///
+    /// ```
+    /// use unbiased::from_fn;
+    /// use unbiased::trade::{Nature, Reach, Rival, Trade};
+    ///
+    /// // E[U] = 1/2, in 24 bits
+    /// let short = from_fn(|rng| f64::from(rng.uniform() as f32));
+    /// let found = Trade::new(1, 0.5)?.seconds_each(0.01)?.compare(&[Rival::new("f32", short).nature(Nature::Biased)])?;
+    /// let short = &found.rivals[0];
+    /// assert!(!short.bias_seen());
+    /// // 1 % is reached, as the bias is known to be smaller; 1e-7 may never be
+    /// assert!(matches!(short.seconds_to(0.01), Reach::After(_)));
+    /// assert!(matches!(short.seconds_to(1e-7), Reach::AtLeast(_)));
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    pub fn bias_seen(&self) -> bool {
+        let bias = self.bias().abs();
+        bias > REAL * self.bias_error() && bias > 8.0 * f64::EPSILON * self.truth.abs()
+    }
+
+    /// The bias where it is seen, else 0.
+    fn counted_bias(&self) -> f64 {
+        if self.bias_seen() { self.bias() } else { 0.0 }
+    }
+
+    /// The least and the largest |bias| that three std errors allow.
+    fn bias_range(&self) -> [f64; 2] {
+        let (bias, reach) = (self.bias().abs(), REAL * self.bias_error());
+        let least = if self.bias_seen() { bias - reach } else { 0.0 };
+        [least, bias + reach]
+    }
+
+    /// The efficiency 1/(σ² t), in 1/(unit² s); infinite where nothing varies, 0 where the variance is infinite.
+    pub fn efficiency(&self) -> f64 {
+        if self.varies() { (self.variance() * self.seconds).recip() } else { f64::INFINITY }
+    }
+
+    /// Whether the draws differ by more than rounding: σ > 8 ε |mean|.
+    pub fn varies(&self) -> bool {
+        self.variance().sqrt() > 8.0 * f64::EPSILON * self.estimate.mean().abs()
+    }
+
+    /// What errors are relative to: the truth's size, and 1 where that is 0.
+    pub fn scale(&self) -> f64 {
+        if self.truth == 0.0 { 1.0 } else { self.truth.abs() }
+    }
+
+    /// The standard error of ln seconds.
+    pub(super) fn time_error(&self) -> f64 {
+        let [low, high] = self.seconds_range;
+        // of a median of normal values, by their quartiles
+        1.253 * (high - low) / 1.349 / (COUNT as f64).sqrt() / self.seconds
+    }
+
+    /// The standard error of ln efficiency, by those of variance and time.
+    pub(super) fn efficiency_error(&self) -> f64 {
+        let of_variance = if self.variance() > 0.0 { self.variance_error / self.variance() } else { 0.0 };
+        self.time_error().hypot(of_variance)
+    }
+
+    /// The root mean square error √(β² + σ² t/T) after T `seconds` on one core, in the truth's unit.
+    pub fn rmse(&self, seconds: f64) -> f64 {
+        if self.nature == Nature::InfiniteVariance {
+            return f64::INFINITY;
+        }
+        (self.variance() * self.seconds / seconds).sqrt().hypot(self.counted_bias())
+    }
+
+    /// When the root mean square error comes down to `error` > 0, relative to the truth (absolute where the truth is 0): after T = σ² t/(error² − β²) seconds on one core, but not before the first
+    /// draw, or replicate, is done.
+    pub fn seconds_to(&self, error: f64) -> Reach {
+        let aim = error.abs() * self.scale();
+        let [least, most] = self.bias_range();
+        let with_bias =
+            |bias: f64| (self.variance() * self.seconds / ((aim - bias) * (aim + bias))).max(self.seconds);
+        if self.nature == Nature::InfiniteVariance || aim <= least || aim.is_nan() {
+            Reach::Never
+        } else if aim > most {
+            Reach::After(with_bias(self.counted_bias().abs()))
+        } else {
+            Reach::AtLeast(with_bias(least))
+        }
+    }
+
+    /// When a `rival` without bias overtakes this one: after T = (σ_r² t_r − σ² t)/β² seconds, if it ever does. Of a rival that was declared biased itself this is
+    /// [`Unknown`](Crossing::Unknown).
+    pub fn overtaken_at(&self, rival: &Self) -> Crossing {
+        let infinite = |one: &Self| one.nature == Nature::InfiniteVariance;
+        let lead = rival.variance() * rival.seconds - self.variance() * self.seconds;
+        if infinite(rival) {
+            Crossing::Never
+        } else if rival.nature == Nature::Biased && self.nature != Nature::InfiniteVariance {
+            Crossing::Unknown
+        } else if infinite(self) || lead <= 0.0 {
+            Crossing::FromTheStart
+        } else if self.nature == Nature::Unbiased {
+            Crossing::Never
+        } else if self.bias_seen() {
+            let seconds = lead / self.bias().powi(2);
+            Crossing::At { seconds, rmse: rival.rmse(seconds) }
+        } else {
+            Crossing::Unknown
+        }
+    }
+}

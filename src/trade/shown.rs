@@ -1,0 +1,389 @@
+//! A comparison as a table for people, and as CSV and JSON for programs, out of one list of columns.
+
+use std::fmt;
+
+use serde::ser::{SerializeMap, SerializeSeq, SerializeStruct};
+use serde::{Serialize, Serializer};
+
+use super::comparison::{Comparison, Place};
+use super::measured::{Crossing, Measured, Nature, Reach};
+
+/// The errors to which a table gives the times.
+const ERRORS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
+
+impl Comparison {
+    /// What the columns of the table are, in a paragraph.
+    pub const EXPLAINED: &str = "σ is the standard deviation of a draw (relative to the truth), the next column what a draw counts, its time the median of 17 batches ± half the distance of their quartiles. \
+        Efficiency is 1/(σ² × time) as a part of the best one's; rank is 1 + the number of rivals that are better by more than three std errors of the difference, so that those of rank 1 are not told apart from the best. \
+        The columns “to …” give the seconds on one core until the root mean square error is so much of the truth, at least those of one draw, which for points that come in replicates is a whole replicate; \
+        with “≥” it is not known whether a bias ends the fall before.";
+
+    /// The names of the table's columns.
+    pub fn columns(&self) -> Vec<&'static str> {
+        let (sigma, to) = if self.truth == 0.0 {
+            ("σ", ["to 10⁻² (absolute)", "to 10⁻³", "to 10⁻⁴", "to 10⁻⁵"])
+        } else {
+            ("σ/truth", ["to 1 %", "to 0.1 %", "to 10⁻⁴", "to 10⁻⁵"])
+        };
+        let mut columns = vec!["estimator", sigma, self.unit_of_work(), "time a draw", "rank", "efficiency"];
+        columns.extend(to);
+        columns.push("remark");
+        columns
+    }
+
+    /// The table's cells, a row each: the rivals without bias by rank, then the biased ones.
+    pub fn rows(&self) -> Vec<Vec<String>> {
+        let rows = self.remarked().into_iter().map(|(rival, place, remark)| {
+            let sigma =
+                if rival.varies() { two_digits(rival.variance().sqrt() / self.scale()) } else { "0".into() };
+            let (rank, efficiency) = place.map_or_else(Default::default, |place| {
+                (place.rank.to_string(), two_digits(place.of_the_best))
+            });
+            let mut row =
+                vec![rival.name.clone(), sigma, two_digits(self.work(rival)), time(rival), rank, efficiency];
+            row.extend(ERRORS.map(|error| rival.seconds_to(error).to_string()));
+            row.push(remark);
+            row
+        });
+        rows.collect()
+    }
+
+    /// What is counted as work: evaluations where every rival counts them, else random numbers.
+    pub fn unit_of_work(&self) -> &'static str {
+        if self.counts_evaluations() { "evaluations" } else { "random numbers" }
+    }
+
+    /// The work of a draw, in that unit.
+    pub fn work(&self, rival: &Measured) -> f64 {
+        if self.counts_evaluations() { rival.evaluations } else { rival.random_numbers }
+    }
+
+    fn counts_evaluations(&self) -> bool {
+        self.rivals.iter().all(|rival| rival.evaluations > 0.0)
+    }
+
+    /// The rivals without bias by rank, then the biased ones, each with what is to be said of it.
+    pub(crate) fn remarked(&self) -> Vec<(&Measured, Option<Place<'_>>, String)> {
+        let ranked = self.ranking().into_iter().map(|place| (place.rival, Some(place)));
+        let biased =
+            self.rivals.iter().filter(|rival| rival.nature == Nature::Biased).map(|rival| (rival, None));
+        let all = ranked.chain(biased);
+        all.map(|(rival, place)| {
+            (rival, place, self.remark(rival, place.is_none_or(|place| place.set_apart)))
+        })
+        .collect()
+    }
+
+    fn remark(&self, rival: &Measured, set_apart: bool) -> String {
+        let mut remarks = Vec::new();
+        match rival.nature {
+            Nature::InfiniteVariance => remarks.push("infinite variance".to_owned()),
+            Nature::Biased => remarks.extend(self.of_the_bias(rival)),
+            Nature::Unbiased => {}
+        }
+        if !rival.varies() {
+            remarks.push("no variance".into());
+        } else if rival.heavy_tail && rival.nature != Nature::InfiniteVariance {
+            remarks.push("a few draws hold the variance, which may be infinite".into());
+        }
+        if !set_apart {
+            remarks.push("not told apart from the one above".into());
+        }
+        remarks.join("; ")
+    }
+
+    fn of_the_bias(&self, rival: &Measured) -> Vec<String> {
+        let (unit, factor) = if self.truth == 0.0 { ("", 1.0) } else { (" %", 100.0 / self.truth) };
+        let [bias, error] = [factor * rival.bias(), (factor * rival.bias_error()).abs()];
+        let places = places(error.max(1e-9));
+        let amount = format!("{bias:.places$} ± {error:.places$}{unit}").replace('-', "−");
+        if !rival.bias_seen() {
+            return vec![format!("no bias seen: {amount}")];
+        }
+        let mut said = vec![format!("bias {amount}")];
+        match self.crossing(rival) {
+            Some(Crossing::At { seconds, rmse }) => {
+                let at = format!("{}{unit}", two_digits((factor * rmse).abs()));
+                said.push(format!("overtaken by the best after {}, at {at}", duration(seconds)));
+            }
+            Some(Crossing::FromTheStart) => said.push("behind the best from the start".into()),
+            Some(Crossing::Never | Crossing::Unknown) | None => {}
+        }
+        said
+    }
+
+    /// A line a rival, with the columns' names first, for other programs.
+    ///
+    /// Numbers are in full, in the truth's unit and in seconds; `inf` is what is infinite or never reached; a cell is empty where nothing is known or nothing applies. `nature` is `unbiased`, `biased` or
+    /// `infinite_variance`; `crossing`, where the best unbiased rival overtakes a biased one, is `at`, `from_the_start`, `never` or `unknown`.
+    ///
+    /// ```
+    /// use unbiased::from_fn;
+    /// use unbiased::trade::{Rival, Trade};
+    ///
+    /// let found = Trade::new(1, 0.5)?.seconds_each(0.01)?.compare(&[Rival::new("U", from_fn(|rng| rng.uniform()))])?;
+    /// assert!(found.csv().starts_with("name,series,nature,draws,mean,"));
+    /// // serde gives the same columns
+    /// let json = serde_json::to_value(&found)?;
+    /// assert_eq!(json["rivals"][0]["name"], "U");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn csv(&self) -> String {
+        let mut csv = NAMES.join(",") + "\n";
+        for record in self.records() {
+            let cells: Vec<String> = record.iter().map(Cell::to_string).collect();
+            csv += &cells.join(",");
+            csv.push('\n');
+        }
+        csv
+    }
+
+    /// The cells of CSV and JSON, a record a rival, in the order in which they were given.
+    fn records(&self) -> Vec<Record<'_>> {
+        let places = self.ranking();
+        let place = |rival: &Measured| places.iter().find(|place| std::ptr::eq(place.rival, rival));
+        self.rivals.iter().map(|rival| record(self, rival, place(rival))).collect()
+    }
+}
+
+/// The columns of CSV and JSON.
+const NAMES: [&str; 31] = [
+    "name",
+    "series",
+    "nature",
+    "draws",
+    "mean",
+    "std_error",
+    "truth",
+    "truth_error",
+    "bias",
+    "bias_error",
+    "bias_seen",
+    "variance",
+    "variance_error",
+    "heavy_tail",
+    "evaluations",
+    "random_numbers",
+    "seconds",
+    "seconds_low",
+    "seconds_high",
+    "efficiency",
+    "of_the_best",
+    "rank",
+    "set_apart",
+    "slope",
+    "seconds_to_1e-2",
+    "seconds_to_1e-3",
+    "seconds_to_1e-4",
+    "seconds_to_1e-5",
+    "crossing",
+    "crossing_seconds",
+    "crossing_error",
+];
+
+/// A cell a column.
+type Record<'a> = [Cell<'a>; 31];
+
+fn record<'a>(comparison: &Comparison, rival: &'a Measured, place: Option<&Place<'_>>) -> Record<'a> {
+    let finite = rival.nature != Nature::InfiniteVariance;
+    let biased = rival.nature == Nature::Biased;
+    let number = |value: f64| if value.is_nan() { Cell::Nothing } else { Cell::Number(value) };
+    // an error bar made of a variance that is infinite is none
+    let with_variance = |value: f64| number(if finite { value } else { f64::INFINITY });
+    let of_bias = |cell: Cell<'a>| if biased { cell } else { Cell::Nothing };
+    let of_place = |cell: fn(&Place<'_>) -> Cell<'a>| place.map_or(Cell::Nothing, cell);
+    let reach = |error: f64| match rival.seconds_to(error) {
+        Reach::After(seconds) => number(seconds),
+        Reach::AtLeast(_) => Cell::Nothing,
+        Reach::Never => Cell::Number(f64::INFINITY),
+    };
+    let (crossing, [at, error]) = match comparison.crossing(rival) {
+        None => (Cell::Nothing, [Cell::Nothing, Cell::Nothing]),
+        Some(Crossing::At { seconds, rmse }) => (Cell::Text("at"), [number(seconds), number(rmse)]),
+        Some(Crossing::FromTheStart) => (Cell::Text("from_the_start"), [Cell::Nothing, Cell::Nothing]),
+        Some(Crossing::Never) => (Cell::Text("never"), [Cell::Nothing, Cell::Nothing]),
+        Some(Crossing::Unknown) => (Cell::Text("unknown"), [Cell::Nothing, Cell::Nothing]),
+    };
+    let [low, high] = rival.seconds_range;
+    let [to_2, to_3, to_4, to_5] = ERRORS.map(reach);
+    [
+        Cell::Text(&rival.name),
+        rival.series.as_deref().map_or(Cell::Nothing, Cell::Text),
+        Cell::Text(rival.nature.key()),
+        Cell::Count(rival.estimate.draws()),
+        number(rival.estimate.mean()),
+        with_variance(rival.estimate.std_error().unwrap_or(f64::NAN)),
+        number(rival.truth),
+        number(rival.truth_error),
+        of_bias(number(rival.bias())),
+        of_bias(number(rival.bias_error())),
+        of_bias(Cell::Flag(rival.bias_seen())),
+        number(rival.variance()),
+        with_variance(rival.variance_error),
+        Cell::Flag(rival.heavy_tail),
+        number(rival.evaluations),
+        number(rival.random_numbers),
+        number(rival.seconds),
+        number(low),
+        number(high),
+        number(rival.efficiency()),
+        of_place(|place| Cell::Number(place.of_the_best)),
+        of_place(|place| Cell::Count(place.rank as u64)),
+        of_place(|place| Cell::Flag(place.set_apart)),
+        comparison.slope(rival).map_or(Cell::Nothing, number),
+        to_2,
+        to_3,
+        to_4,
+        to_5,
+        crossing,
+        at,
+        error,
+    ]
+}
+
+/// A value for programs.
+enum Cell<'a> {
+    Text(&'a str),
+    Count(u64),
+    Number(f64),
+    Flag(bool),
+    Nothing,
+}
+
+/// As CSV has it (RFC 4180).
+impl fmt::Display for Cell<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Text(text) if text.contains([',', '"', '\n', '\r']) => {
+                write!(f, "\"{}\"", text.replace('"', "\"\""))
+            }
+            Self::Text(text) => f.write_str(text),
+            Self::Count(count) => write!(f, "{count}"),
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Flag(flag) => write!(f, "{flag}"),
+            Self::Nothing => Ok(()),
+        }
+    }
+}
+
+impl Serialize for Cell<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Text(text) => serializer.serialize_str(text),
+            Self::Count(count) => serializer.serialize_u64(*count),
+            Self::Number(number) => serializer.serialize_f64(*number),
+            Self::Flag(flag) => serializer.serialize_bool(*flag),
+            Self::Nothing => serializer.serialize_none(),
+        }
+    }
+}
+
+/// As `seed`, `truth`, `truth_error` and `rivals`, each of which has the columns of [`Comparison::csv`]. JSON has no infinity: there it is null, too.
+impl Serialize for Comparison {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut fields = serializer.serialize_struct("Comparison", 4)?;
+        fields.serialize_field("seed", &self.seed)?;
+        fields.serialize_field("truth", &self.truth)?;
+        fields.serialize_field("truth_error", &self.truth_error)?;
+        fields.serialize_field("rivals", &Records(self.records()))?;
+        fields.end()
+    }
+}
+
+struct Records<'a>(Vec<Record<'a>>);
+
+impl Serialize for Records<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut list = serializer.serialize_seq(Some(self.0.len()))?;
+        for record in &self.0 {
+            list.serialize_element(&Fields(record))?;
+        }
+        list.end()
+    }
+}
+
+struct Fields<'a>(&'a Record<'a>);
+
+impl Serialize for Fields<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (name, cell) in NAMES.iter().zip(self.0) {
+            map.serialize_entry(name, cell)?;
+        }
+        map.end()
+    }
+}
+
+/// A table, columns aligned, with what they are below it.
+impl fmt::Display for Comparison {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let heading = self.columns().into_iter().map(str::to_owned).collect();
+        let all: Vec<Vec<String>> = std::iter::once(heading).chain(self.rows()).collect();
+        let width = |column: usize| {
+            all.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..self.columns().len()).map(width).collect();
+        for row in &all {
+            let cells: Vec<String> =
+                row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}")).collect();
+            writeln!(f, "{}", cells.join("  ").trim_end())?;
+        }
+        write!(f, "{}", Self::EXPLAINED)
+    }
+}
+
+/// `1.2 ms`, `never`, or `≥ 1.2 ms`
+impl fmt::Display for Reach {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::After(seconds) => f.write_str(&duration(*seconds)),
+            Self::AtLeast(seconds) => write!(f, "≥ {}", duration(*seconds)),
+            Self::Never => f.write_str("never"),
+        }
+    }
+}
+
+/// The time of a draw, three digits, with half the distance of its quartiles.
+fn time(rival: &Measured) -> String {
+    let (factor, unit) = unit(rival.seconds);
+    let [low, high] = rival.seconds_range;
+    let [time, spread] = [rival.seconds, 0.5 * (high - low)].map(|seconds| factor * seconds);
+    let places = (2.0 - time.log10().floor()).clamp(0.0, 9.0) as usize;
+    format!("{time:.places$} ± {spread:.places$} {unit}")
+}
+
+/// The unit that suits so many seconds, and how many of it are a second.
+fn unit(seconds: f64) -> (f64, &'static str) {
+    match seconds {
+        s if s < 1e-6 => (1e9, "ns"),
+        s if s < 1e-3 => (1e6, "µs"),
+        s if s < 1.0 => (1e3, "ms"),
+        _ => (1.0, "s"),
+    }
+}
+
+/// Seconds, in the unit that suits them.
+pub(crate) fn duration(seconds: f64) -> String {
+    let (factor, unit) = unit(seconds);
+    format!("{} {unit}", two_digits(factor * seconds))
+}
+
+/// Two significant digits, or all of a whole number below 10⁵; `∞`.
+pub(crate) fn two_digits(x: f64) -> String {
+    if x.is_infinite() {
+        return "∞".into();
+    }
+    // 9.99 is shown as 10, which has one digit more
+    let size: f64 = format!("{x:.1e}").parse().map_or(x, f64::abs);
+    if x != 0.0 && !(1e-4..1e5).contains(&size) {
+        return format!("{x:.1e}");
+    }
+    // 0 has no first digit
+    let places = if x == 0.0 { 0.0 } else { (1.0 - size.log10().floor()).clamp(0.0, 9.0) };
+    format!("{x:.*}", places as usize)
+}
+
+/// Decimal places that show two digits of an error.
+fn places(error: f64) -> usize {
+    (1.0 - error.log10().floor()).clamp(0.0, 9.0) as usize
+}
