@@ -260,11 +260,10 @@ struct Series {
 }
 
 impl Series {
-    /// `truth` and its standard error.
     fn measure(
         (label, ink, marker): (&'static str, Ink, Marker),
         paths: &Paths,
-        [truth, truth_error]: [f64; 2],
+        truth: f64,
         seed: u64,
     ) -> Result<Self> {
         const PATHS: u64 = 100_000;
@@ -281,18 +280,29 @@ impl Series {
             }
             measured.push([n as f64, square.sqrt() / truth]);
         }
-        let off = run.estimate.mean() - truth;
-        let noise = run.estimate.std_error().unwrap_or(0.0).hypot(truth_error);
         Ok(Self {
             label,
             ink,
             marker,
             spread: run.estimate.variance().unwrap_or(0.0).sqrt() / truth,
-            bias: if off.abs() > 5.0 * noise { off / truth } else { 0.0 },
+            bias: 0.0,
             rays: run.cost.evaluations as f64 / PATHS as f64,
             seconds: run.elapsed.as_secs_f64() / PATHS as f64,
             measured,
         })
+    }
+
+    /// With this bias, unless it is noise.
+    fn biased(mut self, [mean, error]: [f64; 2], [truth, truth_error]: [f64; 2]) -> Self {
+        if (mean - truth).abs() > 4.0 * error.hypot(truth_error) {
+            self.bias = (mean - truth) / truth;
+        }
+        self
+    }
+
+    /// Whether none of its paths found any light: what is known of it then are its points.
+    fn found_none(&self) -> bool {
+        self.spread == 0.0
     }
 
     fn rmse(&self, paths: f64) -> f64 {
@@ -300,13 +310,13 @@ impl Series {
     }
 }
 
-/// The light of `paths`, with its standard error: of four million paths if they are short, of fewer if they are long, but a hundred thousand at least.
+/// The light of `paths`, with its standard error: of two million paths if they are short, of fewer if they are long, but a hundred thousand at least.
 fn reference(paths: &Paths, seed: u64) -> Result<[f64; 2]> {
     const FEWEST: u64 = 100_000;
     // a seed of its own, so that no error is shared with what is measured against it
     let run = Run::new(seed ^ 0x5eed);
     let rays = run.estimate(paths, Budget::Draws(1000))?.cost.evaluations as f64 / 1000.0;
-    let draws = ((2e7 / rays.max(1.0)) as u64).clamp(FEWEST, 4_000_000);
+    let draws = ((2e7 / rays.max(1.0)) as u64).clamp(FEWEST, 2_000_000);
     let found = run.estimate(paths, Budget::Draws(draws))?.estimate;
     Ok([found.mean(), found.std_error().unwrap_or(0.0)])
 }
@@ -333,10 +343,10 @@ pub fn path_errors(room: &BoxRoom, seed: u64) -> Result<Vec<Figure>> {
     let by = find_light(room)?;
     let paths = |bounces| Paths::new(*room, bounces, Cosine, by);
     let two = match room.two_bounces() {
-        Some(two) => [room.one_bounce() + two, 0.0],
-        None => reference(&paths(Bounces::UpTo(2))?, seed)?,
+        Some(two) => room.one_bounce() + two,
+        None => reference(&paths(Bounces::UpTo(2))?, seed)?[0],
     };
-    if two[0] <= 0.0 {
+    if two <= 0.0 {
         return Ok(Vec::new());
     }
     let mut ways = Vec::new();
@@ -363,7 +373,9 @@ pub fn path_errors(room: &BoxRoom, seed: u64) -> Result<Vec<Figure>> {
         ] {
             let paths = paths(bounces)?;
             if paths.caution().is_none() {
-                endings.push(Series::measure((label, ink, marker), &paths, all, seed)?);
+                let series = Series::measure((label, ink, marker), &paths, all[0], seed)?;
+                let truncated = matches!(bounces, Bounces::UpTo(_));
+                endings.push(if truncated { series.biased(reference(&paths, seed)?, all) } else { series });
             }
         }
     }
@@ -400,39 +412,58 @@ fn error_figure(
         // where light is hard to find all of it lies higher
         let highest =
             all.iter().flat_map(|series| &series.measured).fold(0.0, |most: f64, [_, rmse]| most.max(*rmse));
-        let shift = (1.3 * highest / top).max(1.0);
+        let shift = (1.6 * highest / top).max(1.0);
         let (bottom, top) = (bottom * shift, top * shift);
         let ticks = [(1e-3, "0.1 %"), (1e-2, "1 %"), (0.1, "10 %"), (1.0, "100 %"), (10.0, "1000 %")];
         let y = Axis::log("RMSE/truth", bottom, top);
         let y = if shift < 10.0 { y.with_ticks(ticks) } else { y };
         let mut panel = Panel::new(heading, Axis::log(unit, low, high), y);
-        let mut labels = Vec::new();
+        let up = (top / bottom).powf(0.04);
+        let (mut falling, mut level) = (Vec::new(), Vec::new());
         for series in all {
             let Series { label, ink, marker, .. } = *series;
             let work = cost(series);
-            panel.curve(label, ink, |c| if c >= work { series.rmse(c / work) } else { f64::NAN });
             panel.marks(label, ink, marker, series.measured.iter().map(|[n, rmse]| [n * work, *rmse]));
-            labels.push((ink, label, series.bias != 0.0, series.rmse(high / work)));
+            if series.found_none() {
+                level.push((ink, label, 1.0));
+                continue;
+            }
+            panel.curve(label, ink, |c| if c >= work { series.rmse(c / work) } else { f64::NAN });
+            if series.bias == 0.0 {
+                falling.push((ink, label, series.spread * work.sqrt()));
+            } else {
+                level.push((ink, label, series.bias.abs()));
+            }
         }
-        // beside the right end of each line, and apart from each other: from the highest one down
-        labels.sort_by(|a, b| b.3.total_cmp(&a.3));
-        let line = (top / bottom).powf(0.075);
-        let mut below = top;
-        for (ink, label, level, end) in labels {
-            let at = end * if level { line } else { 1.0 };
-            below = (below / line).min(at);
-            panel.text(ink, [high, below], Side::Left, label);
+        // of two lines close to each other the upper one has its label on the right, where the lines fall away from it
+        falling.sort_by(|a, b| b.2.total_cmp(&a.2));
+        for (rank, (ink, label, once)) in falling.into_iter().enumerate() {
+            let past_the_points = low * (high / low).powf(if rank < 2 { 0.55 } else { 0.6 });
+            let side = if rank % 2 == 0 { Side::Right } else { Side::Left };
+            panel.text(ink, [past_the_points, (once / past_the_points.sqrt()).max(bottom * up)], side, label);
+        }
+        level.sort_by(|a, b| b.2.total_cmp(&a.2));
+        let mut above = f64::INFINITY;
+        for (ink, label, at) in level {
+            let beside = if at * up.powf(1.6) < above { at * up } else { at / up };
+            panel.text(ink, [high, beside], Side::Left, label);
+            above = at;
         }
         panels.push(panel);
     }
     let one = panels.len() < 2;
-    let left_out = ways.len() < 4 || endings.len() < 4;
+    let all_light = if endings.is_empty() {
+        "All light is left out: an albedo is too large for absorption to end a path."
+    } else {
+        "All light: paths of at most two or four bounces level off at what they leave out, paths ended by roulette fall on."
+    };
+    let left_out = ways.len() < 4 || (1..4).contains(&endings.len());
     Plot {
         name,
         title: format!("What the ways of sampling cost: error against {unit}"),
         description: format!(
-            "Root mean square error relative to the truth against {unit}, both logarithmic. Light after at most two bounces, by four ways of sampling: the lower a line, the fewer {unit} an error takes. All light: \
-             paths of at most two or four bounces level off at what they leave out, paths ended by roulette fall on. Lines: from a path's variance, bias and cost; points: 100 runs each (seed {seed}).{}",
+            "Root mean square error relative to the truth against {unit}, both logarithmic. Light after at most two bounces, by four ways of sampling: the lower a line, the fewer {unit} an error takes. {all_light} \
+             Lines: from a path's variance, bias and cost; points: 100 runs each (seed {seed}).{}",
             if left_out { " Ways whose variance may be infinite are left out." } else { "" }
         ),
         edition: Edition::Solution,
