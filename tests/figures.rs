@@ -74,6 +74,12 @@ fn assert_drawn(paths: &Paths, bounces: usize, seed: u64) -> usize {
             }
         }
         vertices.extend(&line[1..bounces]);
+        for corner in line.windows(3) {
+            let way = |to: usize| [corner[to][0] - corner[1][0], corner[to][1] - corner[1][1]];
+            let [[x, y], [u, v]] = [way(0), way(2)];
+            let angle = (x * v - y * u).atan2(x * u + y * v).abs().to_degrees();
+            assert!(angle > 19.0, "{angle}° at {corner:?}");
+        }
         for pair in line.windows(2) {
             for i in 0..=1000 {
                 let t = f64::from(i) / 1000.0;

@@ -220,7 +220,12 @@ impl SideView {
         });
         let free = segments(&path.line)
             .all(|segment| passes_the_cube(segment) && distance_to(segment, self.eye()) > 0.3);
-        edge_on && off_corners && free
+        // nor does it go back the way it came
+        let turns = segments(&path.line).zip(segments(&path.line).skip(1)).all(|([a, at], [_, b])| {
+            let ([x, y], [u, v]) = ([a[0] - at[0], a[1] - at[1]], [b[0] - at[0], b[1] - at[1]]);
+            x * u + y * v < 0.94 * x.hypot(y) * u.hypot(v)
+        });
+        edge_on && off_corners && free && turns
     }
 
     /// Whether paths can be told from each other, the last from those before it.
@@ -252,6 +257,7 @@ impl SideView {
             && apart(&ends, 0.2)
             && apart(&tips, 0.25)
             && vertices.iter().all(|at| off_lines(*at, 0.2))
+            && off_lines(self.p(), 0.5)
             && vertex_normals.chain([self.to_eye()]).all(|tip| off_lines(tip, 0.12))
     }
 
