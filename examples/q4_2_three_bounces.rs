@@ -11,13 +11,17 @@ use unbiased::paths::{Bounces, FindLight, Paths};
 use unbiased::workbook::{self, Answer, Options};
 use unbiased::{Result, figure};
 
+#[path = "section4/dark.rs"]
+#[allow(clippy::duplicate_mod)] // the worksheet takes it in with each of its examples
+mod dark;
+
 /// The answers, as the options ask.
 pub fn answer(options: &Options) -> Result<Vec<Answer>> {
     let room = BoxRoom::new(options.scene())?;
     let paths = |directions, light| Paths::new(room, Bounces::Exactly(3), directions, light);
 
     let mut drawing = Answer::new("4.2", "the paths drawn");
-    for figure in figure::paths_drawn(&paths(Hemisphere::Cosine, FindLight::BySampling)?, 2, options.seed)? {
+    for figure in figure::paths_drawn(&paths(Hemisphere::Cosine, FindLight::BySampling)?, 3, options.seed)? {
         drawing = drawing.figure(figure);
     }
     let mut answers = vec![drawing];
@@ -26,11 +30,8 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
         ("light by chance, uniform directions", Hemisphere::Uniform, FindLight::ByChance),
     ] {
         let outcome = options.run(&paths(directions, light)?, 1_000_000)?;
-        answers.push(
-            Answer::new("4.2", &format!("light that such paths carry, {what}"))
-                .scene(room.scene())
-                .outcome(&outcome),
-        );
+        let row = Answer::new("4.2", &format!("light that such paths carry, {what}"));
+        answers.push(dark::unless_none_found(row.scene(room.scene()).outcome(&outcome), &room));
     }
     Ok(answers)
 }

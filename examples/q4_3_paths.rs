@@ -12,6 +12,10 @@ use unbiased::paths::{Bounces, FindLight, Paths, reflected};
 use unbiased::workbook::{self, Answer, Options};
 use unbiased::{Estimator, Result, figure};
 
+#[path = "section4/dark.rs"]
+#[allow(clippy::duplicate_mod)] // the worksheet takes it in with each of its examples
+mod dark;
+
 /// The answers, as the options ask.
 pub fn answer(options: &Options) -> Result<Vec<Answer>> {
     let room = BoxRoom::new(options.scene())?;
@@ -33,15 +37,10 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
             if let Some(truth) = truth {
                 row = row.truth(truth);
             }
-            if row.estimate().is_some_and(|found| found.mean() == 0.0)
-                && truth.is_some_and(|truth| truth > 0.0)
-            {
-                row = row
-                    .note("No path found the light: an estimate of 0 ± 0 says nothing but that.")
-                    .demonstration();
-            } else if let Some(caution) = caution {
+            if let Some(caution) = caution {
                 row = row.note(format!("Careful: {caution}.")).demonstration();
             }
+            row = dark::unless_none_found(row, &room);
             answers.push(row.scene(room.scene()).parameter("bounces", bounces));
             Ok(())
         };

@@ -51,6 +51,7 @@ pub(super) struct Labels {
     bounds: Box2,
     lines: Vec<[[f64; 2]; 2]>,
     placed: Vec<Box2>,
+    in_the_way: f64,
 }
 
 impl Labels {
@@ -58,7 +59,7 @@ impl Labels {
     pub fn new(low: [f64; 2], high: [f64; 2], scale: f64) -> Self {
         let middle = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
         let bounds = Box2 { middle, half: [high[0] - middle[0], high[1] - middle[1]] };
-        Self { scale, bounds, lines: Vec::new(), placed: Vec::new() }
+        Self { scale, bounds, lines: Vec::new(), placed: Vec::new(), in_the_way: 0.0 }
     }
 
     /// Keeps labels off the lines through these points.
@@ -72,23 +73,30 @@ impl Labels {
         let width =
             |c: char| if "₀₁₂₃₄₅₆₇₈₉ₒᵢⱼ′".contains(c) { 3.4 } else { 5.2 };
         let half = [0.5 * text.chars().map(width).sum::<f64>() / self.scale, 4.6 / self.scale];
-        let mut best: Option<(f64, Box2)> = None;
+        let mut best: Option<(f64, f64, Box2)> = None;
         for ring in 0..5 {
             for step in 0..24 {
                 let angle = f64::from(step) * std::f64::consts::TAU / 24.0;
                 let gap = (3.0 + 4.0 * f64::from(ring)) / self.scale;
                 let middle = [at[0] + angle.cos() * (half[0] + gap), at[1] + angle.sin() * (half[1] + gap)];
                 let candidate = Box2 { middle, half };
-                let cost = self.cost(&candidate) + 0.25 * f64::from(ring);
-                if best.is_none_or(|(least, _)| cost < least) {
-                    best = Some((cost, candidate));
+                let in_the_way = self.cost(&candidate);
+                let cost = in_the_way + 0.25 * f64::from(ring);
+                if best.is_none_or(|(least, ..)| cost < least) {
+                    best = Some((cost, in_the_way, candidate));
                 }
             }
         }
-        if let Some((_, label)) = best {
+        if let Some((_, in_the_way, label)) = best {
             panel.text(ink, label.middle, Side::Centre, text);
             self.placed.push(label);
+            self.in_the_way += in_the_way;
         }
+    }
+
+    /// How much the labels placed so far are in the way: the lines that they cross, and what they cover of each other. 0 is a drawing that reads well.
+    pub fn in_the_way(&self) -> f64 {
+        self.in_the_way
     }
 
     fn cost(&self, label: &Box2) -> f64 {
@@ -103,6 +111,22 @@ impl Labels {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn labels_know_whether_they_are_in_the_way() {
+        let axis = || crate::figure::plot::Axis::linear("x", 0.0, 10.0);
+        let mut panel = Panel::new("", axis(), axis());
+        let mut labels = Labels::new([0.0, 0.0], [10.0, 10.0], 10.0);
+        labels.place(&mut panel, Ink::Black, [5.0, 5.0], "p");
+        assert_eq!(labels.in_the_way(), 0.0);
+        // a grid so fine that no label fits into it
+        for i in 0..100 {
+            let x = 0.1 * f64::from(i);
+            labels.avoid(&[[x, 0.0], [x, 10.0]]);
+        }
+        labels.place(&mut panel, Ink::Black, [5.0, 5.0], "p");
+        assert!(labels.in_the_way() >= 4.0, "{}", labels.in_the_way());
+    }
 
     #[test]
     fn segments_cross_boxes_or_do_not() {

@@ -4,7 +4,7 @@ use rand::distr::Distribution;
 
 use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
 use super::{Edition, Figure};
-use crate::box_room::BoxRoom;
+use crate::box_room::{BoxRoom, Vertex, exact};
 use crate::error::Result;
 use crate::estimate::Estimate;
 use crate::hemisphere::Hemisphere::{Cosine, Uniform};
@@ -14,12 +14,22 @@ use crate::stream::Stream;
 
 /// 4.3: running means of three estimators of the part of two bounces, with the exact value where it is known.
 ///
+/// ```
+/// use unbiased::box_room::{BoxRoom, Scene};
+/// use unbiased::figure;
+///
+/// let figure = figure::two_bounces_converging(&BoxRoom::new(Scene::default())?, 1)?;
+/// assert_eq!(figure.name(), "4_3_convergence");
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+///
 /// # Errors
 /// If it cannot be drawn.
 pub fn two_bounces_converging(room: &BoxRoom, seed: u64) -> Result<Figure> {
     const LAST: u64 = 100_000;
     let room = *room;
-    let known = reflected(room, Cosine, |p_j, _| room.direct(p_j));
+    let reflected_once = |p_j: &Vertex| room.albedo(p_j) * room.scene().radiance * exact::seen(&room, p_j);
+    let known = reflected(room, Cosine, |p_j, _| reflected_once(p_j));
     let sampled = Paths::new(room, Bounces::Exactly(2), Uniform, FindLight::BySampling)?;
     let chance = Paths::new(room, Bounces::Exactly(2), Cosine, FindLight::ByChance)?;
     let reference = estimate(&sampled, Budget::Draws(LAST), seed)?;
@@ -88,6 +98,12 @@ fn running_means(estimator: &dyn Estimator, last: u64, seed: u64) -> Vec<[f64; 2
 
 /// 4.3: what becomes of an estimate when occluded directions are left out of n: the light stands where cos θ > 0.8, and something dark fills the directions below cos θ = c.
 ///
+/// ```
+/// let figure = unbiased::figure::occluded_fraction(10_000, 1)?;
+/// assert_eq!(figure.title(), "An occluded direction counts: it adds 0 to the sum and 1 to n");
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+///
 /// # Errors
 /// If it cannot be drawn.
 pub fn occluded_fraction(draws: u64, seed: u64) -> Result<Figure> {
@@ -138,14 +154,32 @@ pub fn occluded_fraction(draws: u64, seed: u64) -> Result<Figure> {
     .draw()
 }
 
-/// 4.3: the light by the number of bounces, exact where it is known.
+/// A way to find the light whose variance is finite: by chance where the light touches the walls, and its samples near them weigh without bound.
+fn find_light(room: &BoxRoom) -> Result<FindLight> {
+    let sampled = Paths::new(*room, Bounces::UpTo(2), Cosine, FindLight::BySampling)?;
+    Ok(if sampled.caution().is_none() { FindLight::BySampling } else { FindLight::ByChance })
+}
+
+/// 4.3: the light by the number of bounces, exact where it is known, and else from ten million paths each.
+///
+/// ```no_run
+/// use unbiased::box_room::{BoxRoom, Scene};
+/// use unbiased::figure;
+///
+/// // takes some seconds
+/// let figure = figure::radiance_by_bounces(&BoxRoom::new(Scene::default())?, 1)?;
+/// assert_eq!(figure.title(), "Each bounce adds less");
+/// # Ok::<(), unbiased::Error>(())
+/// ```
 ///
 /// # Errors
 /// If it cannot be drawn.
 pub fn radiance_by_bounces(room: &BoxRoom, seed: u64) -> Result<Figure> {
-    const PATHS: u64 = 300_000;
+    const PATHS: u64 = 10_000_000;
+    const MOST: u32 = 8;
     let (mut exact, mut found) = (Vec::new(), Vec::new());
-    for k in 1..=8u32 {
+    let light = find_light(room)?;
+    for k in 1..=MOST {
         let known = match k {
             1 => Some(room.one_bounce()),
             2 => room.two_bounces(),
@@ -155,43 +189,52 @@ pub fn radiance_by_bounces(room: &BoxRoom, seed: u64) -> Result<Figure> {
         if let Some(known) = known {
             exact.push([at, 1e3 * known]);
         } else {
-            let paths = Paths::new(*room, Bounces::Exactly(k), Cosine, FindLight::BySampling)?;
+            let paths = Paths::new(*room, Bounces::Exactly(k), Cosine, light)?;
             let light = estimate(&paths, Budget::Draws(PATHS), seed)?;
             let (mean, error) = (1e3 * light.mean(), 1.96e3 * light.std_error().unwrap_or(0.0));
             found.push([at, mean, mean - error, mean + error]);
         }
     }
-    let values =
-        || exact.iter().map(|[_, y]| *y).chain(found.iter().map(|[_, y, ..]| *y)).filter(|y| *y > 0.0);
+    // k, the value, and between what it lies
+    let all: Vec<_> = exact.iter().map(|&[k, y]| [k, y, y, y]).chain(found.iter().copied()).collect();
+    let lit = all.iter().map(|[_, y, ..]| *y).filter(|y| *y > 0.0);
+    let (least, most) =
+        lit.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), y| (least.min(y), most.max(y)));
     // in the dark there is nothing to see, but axes need a height
-    let (least, most) = values().fold((1.0, 1.0), |(least, most): (f64, f64), y| (least.min(y), most.max(y)));
-    let (low, high) = (10f64.powf(least.log10().floor()), 10f64.powf((2.0 * most).log10().ceil()));
+    let (least, most) = if most > 0.0 { (least, most) } else { (1.0, 1.0) };
+    let (low, high) = (10f64.powf((0.8 * least).log10().floor()), 10f64.powf((2.0 * most).log10().ceil()));
     let mut panel = Panel::new(
         "Light by the number of bounces",
-        Axis::linear("bounces k", 0.4, 8.6).with_ticks((1..=8).map(|k| (f64::from(k), k.to_string()))),
+        Axis::linear("bounces k", 0.4, 8.6).with_ticks((1..=MOST).map(|k| (f64::from(k), k.to_string()))),
         Axis::log("Lₖ (mW m⁻² sr⁻¹)", low, high),
     );
-    panel.bars("exact", Ink::Blue, 0.7, exact.iter().copied());
-    panel.bars("estimated", Ink::Vermilion, 0.7, found.iter().map(|[k, y, ..]| [*k, *y]));
-    panel.error_bars("estimated", Ink::Black, Marker::Dot, found.iter().copied());
-    for [k, y] in
-        exact.iter().copied().chain(found.iter().map(|[k, y, ..]| [*k, *y])).filter(|[_, y]| *y > 0.0)
-    {
-        panel.text(
-            Ink::Black,
-            [k, y],
-            Side::Above,
-            &format!("{y:.places$}", places = (2.0 - y.log10().floor()).clamp(0.0, 6.0) as usize),
-        );
+    let above_0 =
+        |points: &[[f64; 4]]| points.iter().filter(|[_, y, ..]| *y > 0.0).copied().collect::<Vec<_>>();
+    panel.bars("exact", Ink::Blue, 0.7, exact.iter().copied().filter(|[_, y]| *y > 0.0));
+    panel.bars("estimated", Ink::Vermilion, 0.7, above_0(&found).iter().map(|[k, y, ..]| [*k, *y]));
+    panel.error_bars("estimated", Ink::Black, Marker::Dot, above_0(&found));
+    for &[k, y, ..] in &all {
+        let text = match y {
+            y if y >= 1e4 || (y > 0.0 && y < 1e-3) => format!("{y:.0e}"),
+            y if y > 0.0 => {
+                format!("{y:.places$}", places = (2.0 - y.log10().floor()).clamp(0.0, 5.0) as usize)
+            }
+            // a bar of no height, at the foot of the axis
+            _ => "0".into(),
+        };
+        panel.text(Ink::Black, [k, y.max(low)], Side::Above, &text);
     }
+    let list = |ks: Vec<String>| ks.join(", ");
+    let known = list(exact.iter().map(|[k, _]| k.to_string()).collect());
     let top = high / (high / low).powf(0.07);
-    panel.text(Ink::Blue, [8.4, top], Side::Left, "k = 1, 2: exact");
+    panel.text(Ink::Blue, [8.4, top], Side::Left, &format!("k = {known}: exact"));
     panel.text(Ink::Vermilion, [8.4, top / (high / low).powf(0.09)], Side::Left, "others: estimated");
+    let less = all.iter().zip(all.iter().skip(1)).all(|([.., low, _], [.., next])| next < low);
     Plot {
         name: "4_3_bounces",
-        title: "Each bounce adds less".into(),
+        title: if less { "Each bounce adds less" } else { "The light after one bounce, after two, and so on" }.into(),
         description: format!(
-            "Bars, on a logarithmic scale: the light that leaves p after k = 1 to 8 bounces. Where the closed form is known, for one and two bounces, it is exact; the others are means of {PATHS} paths each with 95 % intervals (seed {seed})."
+            "Bars, on a logarithmic scale: the light that leaves p after k = 1 to 8 bounces. For k = {known} it is exact; the others are means of {PATHS} paths each with 95 % intervals, most too short to be seen (seed {seed})."
         ),
         edition: Edition::Solution,
         width: Width::Column,
@@ -218,12 +261,9 @@ struct Series {
 
 impl Series {
     fn measure(
-        label: &'static str,
-        ink: Ink,
-        marker: Marker,
+        (label, ink, marker): (&'static str, Ink, Marker),
         paths: &Paths,
         truth: f64,
-        biased: bool,
         seed: u64,
     ) -> Result<Self> {
         const PATHS: u64 = 100_000;
@@ -245,11 +285,24 @@ impl Series {
             ink,
             marker,
             spread: run.estimate.variance().unwrap_or(0.0).sqrt() / truth,
-            bias: if biased { (run.estimate.mean() - truth) / truth } else { 0.0 },
+            bias: 0.0,
             rays: run.cost.evaluations as f64 / PATHS as f64,
             seconds: run.elapsed.as_secs_f64() / PATHS as f64,
             measured,
         })
+    }
+
+    /// With this bias, unless it is noise.
+    fn biased(mut self, [mean, error]: [f64; 2], [truth, truth_error]: [f64; 2]) -> Self {
+        if (mean - truth).abs() > 4.0 * error.hypot(truth_error) {
+            self.bias = (mean - truth) / truth;
+        }
+        self
+    }
+
+    /// Whether none of its paths found any light: what is known of it then are its points.
+    fn found_none(&self) -> bool {
+        self.spread == 0.0
     }
 
     fn rmse(&self, paths: f64) -> f64 {
@@ -257,23 +310,43 @@ impl Series {
     }
 }
 
+/// The light of `paths`, with its standard error: of two million paths if they are short, of fewer if they are long, but a hundred thousand at least.
+fn reference(paths: &Paths, seed: u64) -> Result<[f64; 2]> {
+    const FEWEST: u64 = 100_000;
+    // a seed of its own, so that no error is shared with what is measured against it
+    let run = Run::new(seed ^ 0x5eed);
+    let rays = run.estimate(paths, Budget::Draws(1000))?.cost.evaluations as f64 / 1000.0;
+    let draws = ((2e7 / rays.max(1.0)) as u64).clamp(FEWEST, 2_000_000);
+    let found = run.estimate(paths, Budget::Draws(draws))?.estimate;
+    Ok([found.mean(), found.std_error().unwrap_or(0.0)])
+}
+
 /// 4.3: RMSE relative to the truth, for the four ways of sampling and for roulette against truncation: once against rays, which are the same on every machine, and once against this machine's seconds.
 /// None where p gets no light.
+///
+/// Ways whose variance may be infinite, [`Paths::caution`], are left out; and so is all light where an albedo is too large for absorption to end a path.
+///
+/// ```no_run
+/// use unbiased::box_room::{BoxRoom, Scene};
+/// use unbiased::figure;
+///
+/// // takes some seconds
+/// let figures = figure::path_errors(&BoxRoom::new(Scene::default())?, 1)?;
+/// assert_eq!(figures[0].name(), "4_3_error");
+/// assert_eq!(figures[1].name(), "4_3_error_seconds");
+/// # Ok::<(), unbiased::Error>(())
+/// ```
 ///
 /// # Errors
 /// If they cannot be drawn.
 pub fn path_errors(room: &BoxRoom, seed: u64) -> Result<Vec<Figure>> {
-    let reference = |bounces: u32, paths: u64| -> Result<f64> {
-        let paths_of = Paths::new(*room, Bounces::UpTo(bounces), Cosine, FindLight::BySampling)?;
-        // a seed of its own, so that no error is shared with what is measured against it
-        Ok(estimate(&paths_of, Budget::Draws(paths), seed ^ 0x5eed)?.mean())
-    };
+    let by = find_light(room)?;
+    let paths = |bounces| Paths::new(*room, bounces, Cosine, by);
     let two = match room.two_bounces() {
         Some(two) => room.one_bounce() + two,
-        None => reference(2, 500_000)?,
+        None => reference(&paths(Bounces::UpTo(2))?, seed)?[0],
     };
-    let all = reference(32, 300_000)?;
-    if !(two > 0.0 && all > 0.0) {
+    if two <= 0.0 {
         return Ok(Vec::new());
     }
     let mut ways = Vec::new();
@@ -284,19 +357,27 @@ pub fn path_errors(room: &BoxRoom, seed: u64) -> Result<Vec<Figure>> {
         ("sampled, cosine", Ink::Blue, Marker::Disc, Cosine, FindLight::BySampling),
     ] {
         let paths = Paths::new(*room, Bounces::UpTo(2), directions, light)?;
-        ways.push(Series::measure(label, ink, marker, &paths, two, false, seed)?);
+        if paths.caution().is_none() {
+            ways.push(Series::measure((label, ink, marker), &paths, two, seed)?);
+        }
     }
     let mut endings = Vec::new();
-    for (label, ink, marker, bounces) in [
-        ("k ≤ 2", Ink::Purple, Marker::Cross, Bounces::UpTo(2)),
-        ("k ≤ 4", Ink::Green, Marker::Triangle, Bounces::UpTo(4)),
-        ("roulette q = 0.8", Ink::Vermilion, Marker::Square, Bounces::All(0.8)),
-        ("roulette by weight", Ink::Blue, Marker::Disc, Bounces::AllByWeight),
-    ] {
-        // an albedo too large for the weight to end a path: that way is left out
-        let Ok(paths) = Paths::new(*room, bounces, Cosine, FindLight::BySampling) else { continue };
-        let biased = matches!(bounces, Bounces::UpTo(_));
-        endings.push(Series::measure(label, ink, marker, &paths, all, biased, seed)?);
+    // an albedo too large for the weight to end a path: nothing else is known to be right then
+    if let Ok(by_weight) = paths(Bounces::AllByWeight) {
+        let all = reference(&by_weight, seed)?;
+        for (label, ink, marker, bounces) in [
+            ("k ≤ 2", Ink::Purple, Marker::Cross, Bounces::UpTo(2)),
+            ("k ≤ 4", Ink::Green, Marker::Triangle, Bounces::UpTo(4)),
+            ("roulette q = 0.8", Ink::Vermilion, Marker::Square, Bounces::All(0.8)),
+            ("roulette by weight", Ink::Blue, Marker::Disc, Bounces::AllByWeight),
+        ] {
+            let paths = paths(bounces)?;
+            if paths.caution().is_none() {
+                let series = Series::measure((label, ink, marker), &paths, all[0], seed)?;
+                let truncated = matches!(bounces, Bounces::UpTo(_));
+                endings.push(if truncated { series.biased(reference(&paths, seed)?, all) } else { series });
+            }
+        }
     }
     let by_rays =
         error_figure("4_3_error", "rays", [10.0, 1e6], |series| series.rays, &ways, &endings, seed)?;
@@ -322,42 +403,73 @@ fn error_figure(
     seed: u64,
 ) -> Result<Figure> {
     let mut panels = Vec::new();
-    // of two lines close to each other the upper one has its label on the right, where the lines fall away from it
-    const SIDES: [Side; 4] = [Side::Right, Side::Left, Side::Right, Side::Left];
     for (heading, all, bottom, top) in
         [("Four ways of sampling, k ≤ 2", ways, 2e-4, 20.0), ("Roulette and truncation", endings, 5e-4, 1.0)]
     {
+        if all.is_empty() {
+            continue;
+        }
+        // where light is hard to find all of it lies higher
+        let highest =
+            all.iter().flat_map(|series| &series.measured).fold(0.0, |most: f64, [_, rmse]| most.max(*rmse));
+        let shift = (1.6 * highest / top).max(1.0);
+        let (bottom, top) = (bottom * shift, top * shift);
         let ticks = [(1e-3, "0.1 %"), (1e-2, "1 %"), (0.1, "10 %"), (1.0, "100 %"), (10.0, "1000 %")];
-        let mut panel = Panel::new(
-            heading,
-            Axis::log(unit, low, high),
-            Axis::log("RMSE/truth", bottom, top).with_ticks(ticks),
-        );
-        for (series, side) in all.iter().zip(SIDES) {
+        let y = Axis::log("RMSE/truth", bottom, top);
+        let y = if shift < 10.0 { y.with_ticks(ticks) } else { y };
+        let mut panel = Panel::new(heading, Axis::log(unit, low, high), y);
+        let up = (top / bottom).powf(0.04);
+        let (mut falling, mut level) = (Vec::new(), Vec::new());
+        for series in all {
             let Series { label, ink, marker, .. } = *series;
             let work = cost(series);
-            panel.curve(label, ink, |c| if c >= work { series.rmse(c / work) } else { f64::NAN });
             panel.marks(label, ink, marker, series.measured.iter().map(|[n, rmse]| [n * work, *rmse]));
-            if series.bias == 0.0 {
-                let past_the_points = low * (high / low).powf(0.55);
-                panel.text(ink, [past_the_points, series.rmse(past_the_points / work)], side, label);
-            } else {
-                panel.text(ink, [high, 1.3 * series.bias.abs()], Side::Left, label);
+            if series.found_none() {
+                level.push((ink, label, 1.0));
+                continue;
             }
+            panel.curve(label, ink, |c| if c >= work { series.rmse(c / work) } else { f64::NAN });
+            if series.bias == 0.0 {
+                falling.push((ink, label, series.spread * work.sqrt()));
+            } else {
+                level.push((ink, label, series.bias.abs()));
+            }
+        }
+        // of two lines close to each other the upper one has its label on the right, where the lines fall away from it
+        falling.sort_by(|a, b| b.2.total_cmp(&a.2));
+        for (rank, (ink, label, once)) in falling.into_iter().enumerate() {
+            let past_the_points = low * (high / low).powf(if rank < 2 { 0.55 } else { 0.6 });
+            let side = if rank % 2 == 0 { Side::Right } else { Side::Left };
+            panel.text(ink, [past_the_points, (once / past_the_points.sqrt()).max(bottom * up)], side, label);
+        }
+        level.sort_by(|a, b| b.2.total_cmp(&a.2));
+        let mut above = f64::INFINITY;
+        for (ink, label, at) in level {
+            let beside = if at * up.powf(1.6) < above { at * up } else { at / up };
+            panel.text(ink, [high, beside], Side::Left, label);
+            above = at;
         }
         panels.push(panel);
     }
+    let one = panels.len() < 2;
+    let all_light = if endings.is_empty() {
+        "All light is left out: an albedo is too large for absorption to end a path."
+    } else {
+        "All light: paths of at most two or four bounces level off at what they leave out, paths ended by roulette fall on."
+    };
+    let left_out = ways.len() < 4 || (1..4).contains(&endings.len());
     Plot {
         name,
         title: format!("What the ways of sampling cost: error against {unit}"),
         description: format!(
-            "Root mean square error relative to the truth against {unit}, both logarithmic. Left, light after at most two bounces: a light sampled at every vertex needs far fewer {unit} than one found by chance, and cosine directions fewer than uniform ones. Right, all light: \
-             paths of at most two or four bounces level off at what they leave out, paths ended by roulette fall on. Lines: from a path's variance, bias and cost; points: 100 runs each (seed {seed})."
+            "Root mean square error relative to the truth against {unit}, both logarithmic. Light after at most two bounces, by four ways of sampling: the lower a line, the fewer {unit} an error takes. {all_light} \
+             Lines: from a path's variance, bias and cost; points: 100 runs each (seed {seed}).{}",
+            if left_out { " Ways whose variance may be infinite are left out." } else { "" }
         ),
         edition: Edition::Solution,
-        width: Width::Page,
+        width: if one { Width::Column } else { Width::Page },
         height_mm: 78.0,
-        columns: 2,
+        columns: panels.len().max(1),
         panels,
     }
     .draw()
