@@ -295,5 +295,5 @@ fn record(question: &str, rival: &Measured, seed: u64) -> Answer {
 
 #[allow(dead_code)] // the worksheet takes this file in as a module
 fn main() -> ExitCode {
-    workbook::appendix(answer)
+    workbook::appendix("trade", answer)
 }
