@@ -220,7 +220,7 @@ impl<'a> Run<'a> {
         Self { seed, threads: None, max_draws: 1_000_000_000, max_time: None, progress: None }
     }
 
-    /// Uses this many threads instead of one a core; the result is the same.
+    /// Uses this many threads instead of one a core; the result of the same draws is the same.
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = Some(threads);
         self
@@ -232,9 +232,10 @@ impl<'a> Run<'a> {
         self
     }
 
-    /// Takes no longer than about this where the budget names an error, the first 64 blocks of the pilot run apart: an error
-    /// that is out of reach is then no [`Error::Budget`], but an estimate of as many draws as the time allows by the pilot's
-    /// pace, with a [`Shortfall`]. The number of these depends on the machine, but not on what they come to.
+    /// Where the budget names an error, takes no more draws than this time allows by the pilot run's pace, though never fewer
+    /// than the pilot, which itself doubles no more once the time is over. An error out of reach is then no [`Error::Budget`]:
+    /// the estimate comes with a [`Shortfall`]. The number of its draws depends on the machine, but not on their values, so it
+    /// stays unbiased; `Budget::Draws` with that number repeats it.
     ///
     /// ```
     /// use std::time::Duration;

@@ -223,6 +223,6 @@ Options
     --probe N            which of the question's probes the draws were made for (1)
     --draws N            draws of your estimator on each probe (1000000)
     --error E            instead: draws until the ratio to the truth has the std error E, by a pilot run: never
-                         fewer than the pilot's, and never more than 5 s of them a probe
+                         fewer than the pilot's, and about 5 s of them a probe at most
     --seconds S          instead: draws for S seconds a probe
     --seed S             their seed (1)";

@@ -222,3 +222,37 @@ fn ended(result: Result<()>) -> ExitCode {
 fn shown(answer: &Answer, edition: Edition) -> bool {
     edition == Edition::Solution || answer.kind() == Kind::Answer
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seconds_given(options: &Options) -> Result<Appendix> {
+        Ok(Appendix {
+            example: "trade",
+            title: "",
+            text: format!("{:?}.", options.budget),
+            tables: Vec::new(),
+            records: Vec::new(),
+            figures: Vec::new(),
+        })
+    }
+
+    #[test]
+    fn an_appendix_has_its_own_time_inside_the_worksheet_and_says_so() {
+        let text = |example, budget| {
+            let mut options = Options::default();
+            options.budget = budget;
+            within_reason(appendix::beside(example).unwrap(), seconds_given, &options).unwrap().text
+        };
+        let time = |seconds| Some(Budget::Time(Duration::from_secs_f64(seconds)));
+        assert_eq!(
+            text("trade", time(2.5)),
+            "Some(Time(100ms)). Here it is 0.1 s each at most; \"cargo run --release --example trade -- --seconds 2.5\" takes the time asked for."
+        );
+        assert_eq!(text("trade", time(0.1)), "Some(Time(100ms)).");
+        assert_eq!(text("trade", time(0.02)), "Some(Time(20ms)).");
+        assert_eq!(text("trade", None), "None.");
+        assert_eq!(text("extremes", time(2.0)), "Some(Time(2s)).");
+    }
+}

@@ -336,7 +336,7 @@ impl Options {
                     [draws] => format!(" --draws {draws}"),
                     _ => {
                         remark = Some(
-                            "with the draws of the row that is to be repeated for N: the clock ended each at its own",
+                            "where N is the number of draws of the row to be repeated: the clock gave each its own",
                         );
                         " --draws N".into()
                     }

@@ -302,9 +302,13 @@ pub(super) fn help(questions: &[&Question]) -> Result<()> {
     text += "Options
     --draws N            draws of every estimator (default: each question's own number)
     --error E            draws until the std error is E, in the units of the answer, by a pilot run: never fewer
-                         than the pilot's (10⁶ where they are cheap), and never more than 5 s of them an estimator
+                         than the pilot's (10⁶ where they are cheap), and about 5 s of them a row at most
     --seconds S          draws for S seconds an estimator
-    --seed S             seed of all random numbers (1)
+";
+    if questions.len() > 1 {
+        text += "                         (0.1 s at most where many are compared, in the last part of the page)\n";
+    }
+    text += "    --seed S             seed of all random numbers (1)
     --threads T          threads (one a core; for the same draws the results are the same for any number)
     --out DIR            folder for figures and pages (worksheet)
     --json               one JSON object a line
