@@ -7,6 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde_json::Value;
 
@@ -457,15 +458,21 @@ fn help_lists_every_option() {
     }
 }
 
-/// The rows of an example under these options, without what differs from run to run.
+/// A folder that no other test has, of those that run beside this one.
+fn folder_of_its_own() -> PathBuf {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    folder(&format!("own-{}", COUNT.fetch_add(1, Ordering::Relaxed)))
+}
+
+/// The rows of an example under these options that hold an estimate.
 fn numbers(example: &str, options: &[&str]) -> Vec<Value> {
-    let out = folder(&format!("numbers-{example}"));
+    let out = folder_of_its_own();
     let rows = rows(&run(example, &[options, &["--json", "--out", out.to_str().unwrap()]].concat()));
     rows.into_iter().filter(|row| row["draws"].is_u64()).collect()
 }
 
 fn said(example: &str, options: &[&str]) -> String {
-    let out = folder(&format!("said-{example}"));
+    let out = folder_of_its_own();
     let output = run(example, &[options, &["--out", out.to_str().unwrap()]].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).unwrap()
