@@ -197,5 +197,5 @@ fn ulps(value: f64, truth: f64) -> String {
 
 #[allow(dead_code)] // the worksheet takes this file in as a module
 fn main() -> ExitCode {
-    workbook::appendix(answer)
+    workbook::appendix("extremes", answer)
 }

@@ -327,5 +327,5 @@ fn record(question: &str, what: &str, seed: u64, rival: &Measured, place: Option
 
 #[allow(dead_code)] // the worksheet takes this file in as a module
 fn main() -> ExitCode {
-    workbook::appendix(answer)
+    workbook::appendix("trade", answer)
 }

@@ -87,7 +87,7 @@ pub enum Error {
         draws: u64,
     },
     /// The error asked for takes more draws than the run allows.
-    #[error("a std error of {std_error:e} takes about {needed:e} draws, more than the limit of {limit}")]
+    #[error("{}, more than the limit of {limit}: ask for a larger error, allow more draws, or give a time", takes(*.std_error, *.needed))]
     Budget {
         /// The standard error asked for.
         std_error: f64,
@@ -142,4 +142,23 @@ pub(crate) fn require(name: &'static str, value: f64, ok: bool, allowed: &'stati
 /// The same for a count.
 pub(crate) fn require_count(name: &'static str, value: u64, ok: bool, allowed: &'static str) -> Result<u64> {
     if ok { Ok(value) } else { Err(Error::Count { name, value, allowed }) }
+}
+
+/// "a std error of 6e-4 takes about 1.2e9 draws"
+pub(crate) fn takes(std_error: f64, draws: f64) -> String {
+    let std_error = rounded(std_error, 3);
+    if draws < 1e300 {
+        format!("a std error of {std_error} takes about {} draws", rounded(draws, 2))
+    } else {
+        format!("a std error of {std_error} takes more than 1e300 draws")
+    }
+}
+
+/// A number to so many digits, trailing zeros left out: 1.2e9.
+pub(crate) fn rounded(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    let rounded = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
+    format!("{rounded:e}")
 }

@@ -4,11 +4,12 @@
 //! blocks' estimates are merged in the order of b, so neither the number of threads nor their timing can
 //! be seen in the result. Memory does not grow with the number of draws.
 
+use std::fmt;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use crate::error::{Error, Result, require, require_count};
+use crate::error::{Error, Result, require, require_count, takes};
 use crate::estimate::{Estimate, SLICE};
 use crate::fast;
 use crate::stream::{Stream, mix};
@@ -111,8 +112,8 @@ impl<F: Fn(&mut Stream) -> f64 + Sync> Estimator for FromFn<F> {
 pub enum Budget {
     /// After this many draws.
     Draws(u64),
-    /// After the draws that, by a pilot run's variance, bring the std error to this. The pilot has a stream of its own
-    /// and is discarded, so the result stays exactly unbiased.
+    /// After the draws that, by a pilot run's variance, bring the std error to this, but never fewer than the pilot's: some
+    /// 10⁶ where draws are cheap. The pilot has a stream of its own and is discarded, so the result stays exactly unbiased.
     StdError(f64),
     /// The same for the std error divided by the mean.
     RelativeError(f64),
@@ -162,11 +163,31 @@ pub struct Outcome {
     pub elapsed: Duration,
     /// The pilot run that fixed the number of draws, if the budget asked for an error.
     pub pilot: Option<Estimate>,
+    /// By how much it falls short of the error asked for, where [`Run::max_time`] cut it short.
+    pub shortfall: Option<Shortfall>,
+}
+
+/// What an error would have taken that a run had no time for. It displays as a clause:
+/// "a std error of 6e-4 takes about 1.2e9 draws".
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shortfall {
+    /// The std error asked for.
+    pub std_error: f64,
+    /// The draws that it would take, by the pilot run's variance.
+    pub draws: f64,
+}
+
+impl fmt::Display for Shortfall {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&takes(self.std_error, self.draws))
+    }
 }
 
 impl Outcome {
-    /// Whether the pilot run never varied, so that its error bar of 0 decided the number of draws: either the estimator has
-    /// no variance, or the pilot missed all of it.
+    /// Whether the pilot run never varied, so that there was nothing to fix the number of draws by: either the estimator has
+    /// no variance, or the pilot missed all of it. A value that a draw takes with probability p is missed by n draws with
+    /// probability (1 − p)ⁿ: below 1e-12 for p ≥ 27.6/n, which is 1.7e-6 for the 2²⁴ draws after which a pilot of cheap
+    /// draws gives up. The run then takes as many draws as a pilot begins with.
     pub fn pilot_never_varied(&self) -> bool {
         self.pilot.is_some_and(|pilot| pilot.std_error() == Some(0.0))
     }
@@ -189,16 +210,17 @@ pub struct Run<'a> {
     seed: u64,
     threads: Option<usize>,
     max_draws: u64,
+    max_time: Option<Duration>,
     progress: Option<&'a Progress<'a>>,
 }
 
 impl<'a> Run<'a> {
     /// A run with this seed, on all cores, of at most 10⁹ draws where the budget names an error.
     pub fn new(seed: u64) -> Self {
-        Self { seed, threads: None, max_draws: 1_000_000_000, progress: None }
+        Self { seed, threads: None, max_draws: 1_000_000_000, max_time: None, progress: None }
     }
 
-    /// Uses this many threads instead of one a core; the result is the same.
+    /// Uses this many threads instead of one a core; the result of the same draws is the same.
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = Some(threads);
         self
@@ -207,6 +229,25 @@ impl<'a> Run<'a> {
     /// Allows this many draws where the budget names an error.
     pub fn max_draws(mut self, max_draws: u64) -> Self {
         self.max_draws = max_draws;
+        self
+    }
+
+    /// Where the budget names an error, takes no more draws than this time allows by the pilot run's pace, though never fewer
+    /// than the pilot, which itself doubles no more once the time is over. An error out of reach is then no [`Error::Budget`]:
+    /// the estimate comes with a [`Shortfall`]. The number of its draws depends on the machine, but not on their values, so it
+    /// stays unbiased; `Budget::Draws` with that number repeats it.
+    ///
+    /// ```
+    /// use std::time::Duration;
+    /// use unbiased::{Budget, Run, from_fn};
+    ///
+    /// let run = Run::new(1).max_time(Duration::from_millis(50));
+    /// let outcome = run.estimate(&from_fn(|rng| rng.uniform()), Budget::StdError(1e-9))?;
+    /// println!("{}: {}", outcome.estimate, outcome.shortfall.unwrap());
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    pub fn max_time(mut self, time: Duration) -> Self {
+        self.max_time = Some(time);
         self
     }
 
@@ -223,30 +264,40 @@ impl<'a> Run<'a> {
     pub fn estimate(&self, estimator: &(impl Estimator + ?Sized), budget: Budget) -> Result<Outcome> {
         let start = Instant::now();
         let mut blocks = Blocks { estimator, workers: self.workers()?, cost: Cost::default() };
-        let (estimate, pilot) = match budget {
+        let by_count = |estimate| (estimate, None, None);
+        let (estimate, pilot, shortfall) = match budget {
             Budget::Draws(draws) => {
                 require_count("the number of draws", draws, draws > 0, "positive")?;
-                (self.run_draws(&mut blocks, draws)?, None)
+                by_count(self.run_draws(&mut blocks, draws)?)
             }
             Budget::Time(time) => {
                 require("the time in seconds", time.as_secs_f64(), !time.is_zero(), "positive")?;
-                (self.run_time(&mut blocks, start, time)?, None)
+                by_count(self.run_time(&mut blocks, start, time)?)
             }
             Budget::StdError(target) => {
                 require("the std error", target, target > 0.0, "positive")?;
-                let pilot = self.pilot(&mut blocks, |_, std_error| std_error > 0.0)?;
-                let draws = self.needed(&pilot, target)?;
-                (self.run_draws(&mut blocks, draws)?, Some(pilot))
+                let pilot = self.pilot(&mut blocks, start, |_, std_error| std_error > 0.0)?;
+                let (draws, shortfall) = self.needed(&pilot, blocks.pilot_draws(), start, target)?;
+                (self.run_draws(&mut blocks, draws)?, Some(pilot), shortfall)
             }
             Budget::RelativeError(target) => {
                 require("the relative error", target, target > 0.0, "positive")?;
-                let pilot = self
-                    .pilot(&mut blocks, |mean, std_error| std_error > 0.0 && std_error < 0.25 * mean.abs())?;
-                let draws = self.needed(&pilot, target * pilot.mean().abs())?;
-                (self.run_draws(&mut blocks, draws)?, Some(pilot))
+                let pilot = self.pilot(&mut blocks, start, |mean, std_error| {
+                    std_error > 0.0 && std_error < 0.25 * mean.abs()
+                })?;
+                let target = target * pilot.mean().abs();
+                let (draws, shortfall) = self.needed(&pilot, blocks.pilot_draws(), start, target)?;
+                (self.run_draws(&mut blocks, draws)?, Some(pilot), shortfall)
             }
         };
-        Ok(Outcome { estimate, seed: self.seed, cost: blocks.cost, elapsed: start.elapsed(), pilot })
+        Ok(Outcome {
+            estimate,
+            seed: self.seed,
+            cost: blocks.cost,
+            elapsed: start.elapsed(),
+            pilot,
+            shortfall,
+        })
     }
 
     fn workers(&self) -> Result<Workers> {
@@ -292,34 +343,56 @@ impl<'a> Run<'a> {
         Ok(estimate)
     }
 
-    /// Draws from a stream of its own until mean and std error are `enough`, doubling up to the limit on draws.
+    /// Draws from a stream of its own until mean and std error are `enough`, doubling up to the limit on draws; without any
+    /// variance only up to [`STILL_BLOCKS`].
     fn pilot<E: Estimator + ?Sized>(
         &self,
         blocks: &mut Blocks<'_, E>,
+        start: Instant,
         enough: impl Fn(f64, f64) -> bool,
     ) -> Result<Estimate> {
         let seed = mix(self.seed ^ PILOT);
         let mut pilot = Estimate::new();
         let mut batch = PILOT_BLOCKS;
+        let size = blocks.size();
         loop {
             blocks.extend(&mut pilot, seed, batch, self.max_draws.max(2))?;
             let std_error = pilot.std_error().unwrap_or(0.0);
-            if enough(pilot.mean(), std_error) || pilot.draws() >= self.max_draws {
+            let still = std_error == 0.0 && pilot.draws() >= size.saturating_mul(STILL_BLOCKS);
+            let late = self.max_time.is_some_and(|time| start.elapsed() >= time);
+            if enough(pilot.mean(), std_error) || still || late || pilot.draws() >= self.max_draws {
                 return Ok(pilot);
             }
-            batch = pilot.draws() / blocks.estimator.draws_per_block().max(1);
+            batch = pilot.draws() / size;
         }
     }
 
-    /// The draws that bring the std error down to `target`, by the pilot's variance.
-    fn needed(&self, pilot: &Estimate, target: f64) -> Result<u64> {
+    /// The draws to take for a std error of `target`, by the pilot's variance, and what is missing where time is short.
+    fn needed(
+        &self,
+        pilot: &Estimate,
+        first: u64,
+        start: Instant,
+        target: f64,
+    ) -> Result<(u64, Option<Shortfall>)> {
         let reached = pilot.std_error().unwrap_or(0.0);
         if reached == 0.0 {
-            return Ok(pilot.draws());
+            return Ok((first.min(pilot.draws()), None));
         }
-        let needed = (pilot.draws() as f64 * (reached / target).powi(2)).ceil().max(2.0);
-        if needed <= self.max_draws as f64 {
-            Ok(needed as u64)
+        // with fewer draws than the pilot's, what the pilot saw may be missing: the error bar would say less than is known
+        let fewest = pilot.draws();
+        let needed = (fewest as f64 * (reached / target).powi(2)).ceil().max(fewest as f64).min(f64::MAX);
+        let limit = match self.max_time {
+            Some(time) => {
+                let times = time.as_secs_f64() / start.elapsed().as_secs_f64().max(1e-9);
+                ((fewest as f64 * times) as u64).min(self.max_draws).max(fewest)
+            }
+            None => self.max_draws.max(fewest),
+        };
+        if needed <= limit as f64 {
+            Ok((needed as u64, None))
+        } else if self.max_time.is_some() {
+            Ok((limit, Some(Shortfall { std_error: target, draws: needed })))
         } else {
             Err(Error::Budget { std_error: target, needed, limit: self.max_draws })
         }
@@ -341,6 +414,10 @@ const BATCH: u64 = 1024;
 /// Blocks of a pilot run: its std error is known to about 10 %.
 const PILOT_BLOCKS: u64 = 64;
 
+/// Blocks after which a pilot run that has not varied is taken to have no variance. Blocks are about equal work, so this is
+/// a tenth of a second where draws are cheap, and fewer draws where they are not.
+const STILL_BLOCKS: u64 = 1024;
+
 /// Sets the pilot's seed apart from the run's.
 const PILOT: u64 = 0x7069_6c6f_7420_7275;
 
@@ -360,9 +437,19 @@ struct Blocks<'e, E: ?Sized> {
 }
 
 impl<E: Estimator + ?Sized> Blocks<'_, E> {
+    /// Draws in a block.
+    fn size(&self) -> u64 {
+        self.estimator.draws_per_block().max(1)
+    }
+
+    /// Draws that a pilot run begins with.
+    fn pilot_draws(&self) -> u64 {
+        self.size().saturating_mul(PILOT_BLOCKS)
+    }
+
     /// Takes the next `batch` blocks into `estimate`, but no more than `limit` draws in all.
     fn extend(&mut self, estimate: &mut Estimate, seed: u64, batch: u64, limit: u64) -> Result<()> {
-        let size = self.estimator.draws_per_block().max(1);
+        let size = self.size();
         let first = estimate.draws() / size;
         let last = first.saturating_add(batch).min(limit.div_ceil(size));
         let estimator = self.estimator;

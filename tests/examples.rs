@@ -7,6 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde_json::Value;
 
@@ -379,6 +380,28 @@ fn bad_input_gets_one_sentence_an_exit_code_and_leaves_nothing_behind() {
         ("q5_3_more_bounces", &["--visibility", "2"], 2, "must be"),
         ("q5_3_more_bounces", &["--max-k", "1e12"], 2, "must be"),
         ("worksheet", &["--color"], 2, "there is no option --color"),
+        (
+            "q1_3_axes",
+            &["--error", "1e-4", "--seconds", "2"],
+            2,
+            "--draws, --error and --seconds each end a run",
+        ),
+        ("q1_3_axes", &["--draws", "10", "--error", "1e-4"], 2, "give one of them"),
+        ("worksheet", &["--seconds", "1", "--draws", "10"], 2, "give one of them"),
+        ("q1_3_axes", &["--error", "0"], 2, "--error takes a positive number, not \"0\""),
+        ("q1_3_axes", &["--error", "inf"], 2, "--error takes a positive number, not \"inf\""),
+        ("q1_3_axes", &["--seconds", "nan"], 2, "--seconds takes a positive number, not \"nan\""),
+        ("q1_3_axes", &["--seconds", "1e30"], 2, "--seconds takes a number from 1e-9 to 1e19, not \"1e30\""),
+        ("q1_3_axes", &["--seconds", "1e-320"], 2, "from 1e-9 to 1e19, not \"1e-320\""),
+        ("q2_1_square", &["--n", "1e300"], 2, "--n takes a whole number, not 1e300"),
+        ("trade", &["--draws", "10"], 2, "trade takes no --draws: it compares estimators on one core"),
+        ("trade", &["--error", "1e-2"], 2, "trade takes no --error"),
+        ("trade", &["--threads", "1"], 2, "trade takes no --threads"),
+        ("trade", &["--edition", "student"], 2, "trade takes no --edition"),
+        ("trade", &["--hint"], 2, "trade takes no --hint"),
+        ("extremes", &["--draws", "5"], 2, "extremes takes no --draws: it evaluates each formula once"),
+        ("extremes", &["--seconds", "5"], 2, "extremes takes no --seconds"),
+        ("extremes", &["--rate", "5"], 2, "there is no option --rate"),
     ] {
         let out = folder("bad");
         let output = run(example, &[&["--out", out.to_str().unwrap()], arguments].concat());
@@ -412,11 +435,130 @@ fn help_lists_every_option() {
             let output = run(example, &[flag]);
             let text = String::from_utf8(output.stdout).unwrap();
             assert!(output.status.success());
-            for option in ["--draws", "--seed", "--threads", "--out", "--json", "--edition"].iter().chain(own)
-            {
+            let common = ["--draws", "--error", "--seconds", "--seed", "--threads", "--out", "--json"];
+            for option in common.iter().chain(&["--edition", "--hint"]).chain(own) {
                 assert!(text.contains(option), "{example}: {option}");
             }
         }
+    }
+    // those beside the questions list what they take, and nothing else
+    for (example, listed) in [
+        ("trade", &["--seconds", "--seed", "--out", "--json"][..]),
+        ("extremes", &["--seed", "--out", "--json"]),
+    ] {
+        let text = String::from_utf8(run(example, &["--help"]).stdout).unwrap();
+        let options = text.lines().filter_map(|line| line.trim().split(' ').next());
+        assert_eq!(options.filter(|word| word.starts_with("--")).collect::<Vec<_>>(), listed);
+    }
+    let (_, said) = check_mine(&["--help"], "");
+    for option in
+        ["--question", "--answer", "--draws-from", "--probe", "--draws", "--error", "--seconds", "--seed"]
+    {
+        assert!(said.contains(option), "check_mine: {option}");
+    }
+}
+
+/// A folder that no other test has, of those that run beside this one.
+fn folder_of_its_own() -> PathBuf {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    folder(&format!("own-{}", COUNT.fetch_add(1, Ordering::Relaxed)))
+}
+
+/// The rows of an example under these options that hold an estimate.
+fn numbers(example: &str, options: &[&str]) -> Vec<Value> {
+    let out = folder_of_its_own();
+    let rows = rows(&run(example, &[options, &["--json", "--out", out.to_str().unwrap()]].concat()));
+    rows.into_iter().filter(|row| row["draws"].is_u64()).collect()
+}
+
+fn said(example: &str, options: &[&str]) -> String {
+    let out = folder_of_its_own();
+    let output = run(example, &[options, &["--out", out.to_str().unwrap()]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The pilot of 2²⁰ draws knows their variance to 0.1 %, and 7 of these is below 1 %.
+#[test]
+fn an_error_asked_for_is_reached() {
+    let [share] = &numbers("q1_3_axes", &["--error", "2e-4"])[..] else { panic!() };
+    let reached = share["std_error"].as_f64().unwrap();
+    assert!((reached / 2e-4 - 1.0).abs() <= 0.01, "{share}");
+    assert!(share["draws"].as_u64().unwrap() > 1 << 20, "{share}");
+    let text = said("q1_3_axes", &["--error", "0.0002"]);
+    assert!(text.contains("--error 0.0002 --seed 1") && text.contains('✓'), "{text}");
+    // easily reached: as many draws as the pilot's, enough for every mark
+    let text = said("q3_6_variance", &["--error", "1e-2"]);
+    assert!(!text.contains('✗') && !text.contains("too few") && !text.contains("inf"), "{text}");
+    let text = said("q3_6_variance", &["--error", "1e300"]);
+    assert!(text.contains("--error 1e300 --seed 1"), "{text}");
+    // without variance a pilot ends after 2²⁴ draws
+    let [dark] = &numbers("q3_1_emission", &["--error", "1e-9"])[..] else { panic!() };
+    assert_eq!(dark["draws"].as_u64(), Some(1 << 20), "{dark}");
+}
+
+/// Takes the five seconds that a row has.
+#[test]
+fn an_error_out_of_reach_is_a_remark_on_its_row() {
+    let text = said("q1_3_axes", &["--error", "1e-300"]);
+    for part in [
+        "Cut short at a std error of ",
+        "a std error of 1e-300 takes more than 1e300 draws",
+        "--seconds",
+        "✓",
+    ] {
+        assert!(text.contains(part), "{part:?} is missing in\n{text}");
+    }
+    assert!(text.contains(" --draws ") && !text.contains(" --error "), "what repeats it:\n{text}");
+    assert!(!text.contains("inf"), "{text}");
+}
+
+#[test]
+fn a_time_is_spent_and_its_draws_repeat_the_result() {
+    let same = |mut row: Value| {
+        row.as_object_mut().unwrap().remove("figures");
+        without_seconds(row)
+    };
+    let [share] = &numbers("q1_3_axes", &["--seconds", "0.05"])[..] else { panic!() };
+    assert!(share["seconds"].as_f64().unwrap() >= 0.05, "{share}");
+    let draws = share["draws"].to_string();
+    let [again] = &numbers("q1_3_axes", &["--draws", &draws])[..] else { panic!() };
+    assert_eq!(same(share.clone()), same(again.clone()));
+    // the command that is printed does so: with the draws of one row, or saying where they stand
+    let text = said("q1_3_axes", &["--seconds", "0.05"]);
+    let count = text.split(" draws, ").next().and_then(|before| before.split_whitespace().last()).unwrap();
+    assert!(text.contains(&format!("--draws {count} --seed 1")) && !text.contains("--seconds"), "{text}");
+    let text = said("q1_1_exponential", &["--seconds", "0.02"]);
+    assert!(
+        text.contains("--draws N --seed 1\n                 where N is the number of draws of the row"),
+        "{text}"
+    );
+}
+
+#[test]
+fn too_few_draws_are_not_judged() {
+    for (example, rows) in [("q3_6_variance", 7), ("q1_3_axes", 1)] {
+        for draws in ["1", "2", "999"] {
+            let text = said(example, &["--draws", draws]);
+            assert_eq!(text.matches("too few draws to judge").count(), rows, "{text}");
+            assert!(!text.contains('✓') && !text.contains('✗') && !text.contains("inf"), "{text}");
+        }
+    }
+    let text = said("q3_6_variance", &["--draws", "1000"]);
+    assert!(text.contains('✓') && !text.contains("too few"), "{text}");
+    // a ring that no draw will hit: 0 ± 0 is no evidence, for all its draws
+    let text = said("q3_6_variance", &["--width", "1e-9", "--draws", "200000"]);
+    assert_eq!(text.matches("too few draws to judge").count(), 2, "{text}");
+    assert!(!text.contains('✗'), "{text}");
+}
+
+#[test]
+fn the_readers_estimator_is_judged_by_any_budget() {
+    for budget in [&["--error", "2e-3"][..], &["--seconds", "0.05"]] {
+        let (code, said) = check_mine(budget, "");
+        assert_eq!(code, Some(0), "{said}");
+        assert!(said.contains("consistent with:\n1. uniform directions, the cosine weight"), "{said}");
+        assert!(said.contains(" draws a probe, seed 1.\nNot right"), "{said}");
     }
 }
 
@@ -504,6 +646,19 @@ fn what_cannot_be_judged_is_said_in_one_sentence() {
         (&["--question", "1.1", "--draws-from", "no-such-file"], "", "could not be read"),
         (&["--question", "1.1", "--draws-from", "-", "--probe", "99"], "", "--probe is 1 to"),
         (&["--colour"], "", "--colour"),
+        (&["--draws", "10", "--error", "0.1"], "", "give one of them"),
+        (&["--question", "1.2", "--answer", "1", "--draws", "10"], "", "--answer has no use for --draws"),
+        (
+            &["--question", "1.2", "--answer", "1", "--draws-from", "-"],
+            "",
+            "--answer has no use for --draws-from",
+        ),
+        (
+            &["--question", "1.1", "--draws-from", "-", "--seconds", "1"],
+            "1\n2\n",
+            "--draws-from has no use for --seconds",
+        ),
+        (&["--probe", "2"], "", "--probe says what the draws of --draws-from are for"),
     ] {
         let (code, said) = check_mine(arguments, input);
         assert_eq!(code, Some(2), "{arguments:?}: {said}");

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use rand::Rng;
 use unbiased::inversion::Exponential;
-use unbiased::{Budget, Error, Estimator, Run, Stream, estimate, from_fn};
+use unbiased::{Budget, Error, Estimator, Outcome, Run, Stream, estimate, from_fn};
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
@@ -234,14 +234,15 @@ fn an_empty_budget_is_an_error() {
     }
 }
 
-/// The pilot's variance of 10⁶ draws is known to 0.3 %, so the std error reached is within 2 % (7 of its std errors) of the one asked for.
+/// The pilot's variance of 10⁶ draws is known to 0.3 %, so the std error reached is within 2 % (7 of its std errors) of the one asked for, if that
+/// takes more draws than the pilot.
 #[test]
 fn a_budget_of_error_reaches_it() {
     let uniform = from_fn(|rng| 1.0 + rng.uniform());
     for seed in 0..5 {
-        let outcome = Run::new(common::seed(seed)).estimate(&uniform, Budget::StdError(3e-4)).unwrap();
+        let outcome = Run::new(common::seed(seed)).estimate(&uniform, Budget::StdError(2e-4)).unwrap();
         let reached = outcome.estimate.std_error().unwrap();
-        assert!((reached / 3e-4 - 1.0).abs() <= 0.02, "{reached}");
+        assert!((reached / 2e-4 - 1.0).abs() <= 0.02, "{reached}");
         let outcome = Run::new(common::seed(seed)).estimate(&uniform, Budget::RelativeError(1e-4)).unwrap();
         let reached = outcome.estimate.std_error().unwrap() / outcome.estimate.mean();
         assert!((reached / 1e-4 - 1.0).abs() <= 0.02, "{reached}");
@@ -264,12 +265,109 @@ fn the_pilot_is_discarded() {
     assert_eq!(outcome.cost.random_numbers, draws + outcome.pilot.unwrap().draws());
 }
 
+/// What the pilot saw of rare values, fewer draws than its own might miss: their error bar would be too good to be true.
+#[test]
+fn an_error_that_is_easily_reached_takes_as_many_draws_as_the_pilot() {
+    let rare = from_fn(|rng| if rng.uniform() < 1e-3 { 1.0 } else { 0.0 });
+    for budget in [Budget::StdError(0.5), Budget::StdError(f64::INFINITY), Budget::RelativeError(10.0)] {
+        let outcome = Run::new(common::seed(11)).estimate(&rare, budget).unwrap();
+        assert_eq!(outcome.pilot.unwrap().draws(), 1 << 20);
+        assert_eq!(outcome.estimate.draws(), 1 << 20);
+        assert!(outcome.estimate.mean() > 0.0 && !outcome.pilot_never_varied());
+    }
+    let outcome = Run::new(1).estimate(&Wide, Budget::StdError(1.0)).unwrap();
+    assert_eq!(outcome.estimate.draws(), 64 * 7);
+    // the limit on draws comes first
+    let outcome = Run::new(1).max_draws(100).estimate(&Wide, Budget::StdError(1.0)).unwrap();
+    assert_eq!(outcome.estimate.draws(), 100);
+}
+
+/// Without any variance a pilot gives up after 1024 blocks, and what follows is as long as its beginning. A value that comes up once in 10⁶ draws, which
+/// the first 2²⁰ may miss, is missed by 2²⁴ with probability 5e-8; with the fixed seeds it is not.
+#[test]
+fn a_pilot_without_variance_ends_early_but_not_at_once() {
+    let still = from_fn(|rng| rng.uniform() * 0.0 + 0.1);
+    for budget in [Budget::StdError(1e-9), Budget::RelativeError(1e-9)] {
+        let outcome = Run::new(1).estimate(&still, budget).unwrap();
+        assert!(outcome.pilot_never_varied() && outcome.shortfall.is_none());
+        assert_eq!(outcome.pilot.unwrap().draws(), 1 << 24);
+        assert_eq!(outcome.estimate.draws(), 1 << 20);
+        assert_eq!(outcome.cost.random_numbers, (1 << 24) + (1 << 20));
+    }
+    let mut doubled = 0;
+    for seed in 0..8 {
+        let rare = from_fn(|rng| if rng.uniform() < 1e-6 { 1.0 } else { 0.0 });
+        let outcome = Run::new(common::seed(30 + seed)).estimate(&rare, Budget::StdError(1.0)).unwrap();
+        assert!(!outcome.pilot_never_varied());
+        let pilot = outcome.pilot.unwrap().draws();
+        doubled += u64::from(pilot > 1 << 20);
+        assert_eq!(outcome.estimate.draws(), pilot);
+    }
+    // 2²⁰ draws miss it with probability 0.35
+    assert!(doubled > 0);
+}
+
+#[test]
+fn what_is_out_of_reach_is_said_in_few_digits() {
+    let uniform = from_fn(|rng| rng.uniform());
+    let said = |target| Run::new(1).estimate(&uniform, Budget::StdError(target)).unwrap_err().to_string();
+    // σ² = 1/12: 8.3e10 draws, from a pilot whose variance is right to 0.5 %
+    assert_eq!(
+        said(1e-6),
+        "a std error of 1e-6 takes about 8.3e10 draws, more than the limit of 1000000000: ask for a larger error, allow more draws, or give a time"
+    );
+    assert!(said(1e-300).starts_with("a std error of 1e-300 takes more than 1e300 draws, more than"));
+    // to three digits: 1.23e-6
+    assert!(said(1.234_567e-6).starts_with("a std error of 1.23e-6 takes about 5.5e10 draws"));
+    let relative = Run::new(1).estimate(&from_fn(|rng| rng.uniform() + 1.0), Budget::RelativeError(1e-6));
+    assert!(relative.unwrap_err().to_string().starts_with("a std error of 1.5e-6 takes about 3.7e10 draws"));
+}
+
+/// Twenty times the time and more are allowed for: other tests keep the machine busy.
+#[test]
+fn a_time_limit_ends_a_run_short_of_its_error() {
+    let uniform = from_fn(|rng| rng.uniform());
+    for budget in [Budget::StdError(1e-300), Budget::StdError(1e-9), Budget::RelativeError(1e-9)] {
+        let start = Instant::now();
+        let run = Run::new(common::seed(12)).max_draws(u64::MAX).max_time(Duration::from_millis(200));
+        let outcome = run.estimate(&uniform, budget).unwrap();
+        assert!(start.elapsed() < Duration::from_secs(10));
+        let short = outcome.shortfall.unwrap();
+        let draws = outcome.estimate.draws();
+        assert!(short.draws > draws as f64 && outcome.estimate.std_error().unwrap() > short.std_error);
+        assert!(draws >= outcome.pilot.unwrap().draws());
+        // as with any number of draws
+        assert_eq!(outcome.estimate, estimate(&uniform, Budget::Draws(draws), common::seed(12)).unwrap());
+    }
+    // within reach of the time, nothing is missing
+    let run = Run::new(common::seed(12)).max_time(Duration::from_secs(100));
+    let outcome = run.estimate(&uniform, Budget::StdError(2e-4)).unwrap();
+    assert_eq!(
+        outcome,
+        Outcome {
+            elapsed: outcome.elapsed,
+            ..Run::new(common::seed(12)).estimate(&uniform, Budget::StdError(2e-4)).unwrap()
+        }
+    );
+    assert!(outcome.shortfall.is_none());
+    // no time at all: the pilot's first blocks, and as many draws again
+    let outcome =
+        Run::new(1).max_time(Duration::ZERO).estimate(&from_fn(|_| 1.0), Budget::StdError(1.0)).unwrap();
+    assert_eq!((outcome.pilot.unwrap().draws(), outcome.estimate.draws()), (1 << 20, 1 << 20));
+    // the limit on draws holds, too
+    let run = Run::new(1).max_draws(1_500_000).max_time(Duration::from_secs(100));
+    let outcome = run.estimate(&uniform, Budget::StdError(1e-6)).unwrap();
+    assert_eq!(outcome.estimate.draws(), 1_500_000);
+    assert_eq!(outcome.shortfall.unwrap().to_string(), "a std error of 1e-6 takes about 8.3e10 draws");
+}
+
 #[test]
 fn a_pilot_that_never_varies_says_so_and_one_out_of_reach_is_an_error() {
     let outcome =
         Run::new(1).max_draws(5_000_000).estimate(&from_fn(|_| 0.1), Budget::StdError(1e-6)).unwrap();
     assert!(outcome.pilot_never_varied());
     assert_eq!(outcome.pilot.unwrap().draws(), 5_000_000);
+    assert_eq!(outcome.estimate.draws(), 1 << 20);
     // a mean of 0 has no relative error
     let centred = from_fn(|rng| rng.uniform() - 0.5);
     let run = Run::new(common::seed(9)).max_draws(4_000_000);

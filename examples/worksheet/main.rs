@@ -62,6 +62,6 @@ fn main() -> ExitCode {
             ("5.2", q5_2::answer),
             ("5.3", q5_3::answer),
         ],
-        &[extremes::answer, trade::answer],
+        &[("extremes", extremes::answer), ("trade", trade::answer)],
     )
 }

@@ -6,7 +6,7 @@ use super::Value;
 use crate::box_room::Scene;
 use crate::estimate::Estimate;
 use crate::figure::{Edition, Figure};
-use crate::run::{Cost, Outcome};
+use crate::run::{Cost, Outcome, Shortfall};
 use crate::trade::Measured;
 
 /// What a row of an answer is.
@@ -33,9 +33,16 @@ pub struct Answer {
     seed: Option<u64>,
     seconds: Option<f64>,
     pilot_never_varied: bool,
+    shortfall: Option<Shortfall>,
     note: Option<String>,
     figures: Vec<Figure>,
 }
+
+/// With fewer draws than this a mean need not be near normal, and z says nothing.
+const FEWEST: u64 = 1000;
+
+/// The same where all draws are alike, and off.
+const FEWEST_ALIKE: u64 = 100_000;
 
 impl Answer {
     /// An answer to `question`, the sheet's number first ("2.1", "5.1(ii)"), about `what`, which does not tell it.
@@ -52,6 +59,7 @@ impl Answer {
             seed: None,
             seconds: None,
             pilot_never_varied: false,
+            shortfall: None,
             note: None,
             figures: Vec::new(),
         }
@@ -97,6 +105,7 @@ impl Answer {
         self.seed = Some(outcome.seed);
         self.seconds = Some(outcome.elapsed.as_secs_f64());
         self.pilot_never_varied = outcome.pilot_never_varied();
+        self.shortfall = outcome.shortfall;
         self
     }
 
@@ -158,12 +167,25 @@ impl Answer {
         self.estimate?.z(self.truth?)
     }
 
-    /// Whether the estimate agrees with the truth, |z| ≤ 4, where there are both and the row is not a demonstration.
+    /// Whether the estimate agrees with the truth, |z| ≤ 4, where there are both, the row is not a demonstration, and there are
+    /// draws enough to say so: 1000, or 100 000 where none of them differed and all are off. (A value that comes up in a draw with
+    /// probability p is missed by n draws with probability 1e-12 or less from p = 27.6/n on: here 3e-4.) Where they have less than
+    /// a hundredth of the truth, no number will do: all of it may be in values as rare as that, as with a light too small to hit.
     pub fn agrees(&self) -> Option<bool> {
-        if self.kind == Kind::Demonstration {
+        if self.kind == Kind::Demonstration || self.too_few_draws() {
             return None;
         }
         Some(self.z()?.abs() <= 4.0)
+    }
+
+    /// Whether nothing but the number of draws stands in the way of a verdict.
+    pub(super) fn too_few_draws(&self) -> bool {
+        let (Some(estimate), Some(truth), Kind::Answer) = (self.estimate, self.truth, self.kind) else {
+            return false;
+        };
+        let all_alike_and_off = self.z().is_some_and(f64::is_infinite);
+        let hidden = all_alike_and_off && estimate.mean().abs() < 0.01 * truth.abs();
+        hidden || estimate.draws() < if all_alike_and_off { FEWEST_ALIKE } else { FEWEST }
     }
 
     pub(super) fn parameters(&self) -> &[(&'static str, Value)] {
@@ -191,6 +213,11 @@ impl Answer {
         self.pilot_never_varied
     }
 
+    /// By how much it falls short of the error asked for.
+    pub(super) fn shortfall(&self) -> Option<Shortfall> {
+        self.shortfall
+    }
+
     pub(super) fn sentence(&self) -> Option<&str> {
         self.note.as_deref()
     }
@@ -198,5 +225,46 @@ impl Answer {
     /// The figures that belong to this edition.
     pub(super) fn figures(&self, edition: Edition) -> impl Iterator<Item = &Figure> {
         self.figures.iter().filter(move |figure| figure.edition() == edition)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Budget, Estimator, Run, from_fn};
+
+    fn row(estimator: &dyn Estimator, draws: u64, truth: f64) -> Answer {
+        let outcome = Run::new(1).threads(1).estimate(estimator, Budget::Draws(draws)).unwrap();
+        Answer::new("1.1", "").truth(truth).outcome(&outcome)
+    }
+
+    /// U's mean is 1/2: at 1000 draws 0.4 is eleven std errors off, with fewer it is not judged.
+    #[test]
+    fn what_is_wrong_is_marked_once_there_are_draws_enough() {
+        let uniform = from_fn(|rng| rng.uniform());
+        for (draws, right, wrong) in
+            [(1, None, None), (2, None, None), (999, None, None), (1000, Some(true), Some(false))]
+        {
+            assert_eq!(row(&uniform, draws, 0.5).agrees(), right, "{draws}");
+            assert_eq!(row(&uniform, draws, 0.4).agrees(), wrong, "{draws}");
+            assert_eq!(row(&uniform, draws, 0.4).too_few_draws(), wrong.is_none());
+        }
+        assert_eq!(row(&uniform, 1000, 0.4).demonstration().agrees(), None);
+        assert!(!row(&uniform, 2, 0.4).demonstration().too_few_draws());
+    }
+
+    #[test]
+    fn draws_that_are_all_alike_are_judged_later_if_they_are_off() {
+        let one = from_fn(|_| 1.0);
+        for (draws, truth, agrees) in [
+            (1000, 1.0, Some(true)),
+            (99_999, 1.1, None),
+            (100_000, 1.1, Some(false)),
+            (999, 1.0, None),
+            (100_000, 99.0, Some(false)),
+            (100_000, 101.0, None),
+        ] {
+            assert_eq!(row(&one, draws, truth).agrees(), agrees, "{draws} {truth}");
+        }
     }
 }

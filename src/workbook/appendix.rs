@@ -1,7 +1,54 @@
 //! What the workbook says beside the questions: a text, tables and figures, on the page and by an example of its own.
 
 use super::Answer;
+use crate::error::{Error, Result};
 use crate::figure::Figure;
+
+/// What is known of an example beside the questions before it is run.
+pub(super) struct Beside {
+    /// The file in `examples/`, without `.rs`.
+    pub example: &'static str,
+    /// What it does, in a paragraph.
+    pub about: &'static str,
+    /// What `--seconds` is to it, if anything.
+    pub seconds: Option<&'static str>,
+    /// Why it takes no other options than it does.
+    pub why: &'static str,
+}
+
+const ALL: [Beside; 2] = [
+    Beside {
+        example: "extremes",
+        about: "Where the obvious code breaks: formulas as one writes them down, inputs at which they fail, and what the crate gives there.",
+        seconds: None,
+        why: "it evaluates each formula once, and has no student edition and no hint",
+    },
+    Beside {
+        example: "trade",
+        about: "What does a second buy? The workbook's rival estimators, compared by variance and time on one core of this machine.",
+        seconds: Some("seconds for each estimator (0.03)"),
+        why: "it compares estimators on one core, for --seconds S each, and has no student edition and no hint",
+    },
+];
+
+/// The example beside the questions of this name.
+pub(super) fn beside(example: &str) -> Result<&'static Beside> {
+    let known = ALL.iter().find(|beside| beside.example == example);
+    known.ok_or_else(|| Error::Usage(format!("there is no example {example} beside the questions")))
+}
+
+impl Beside {
+    /// Refuses an option of the questions' examples that it can do nothing with.
+    pub fn take(&self, option: &str) -> Result<()> {
+        let refused = match option {
+            "draws" | "error" | "threads" | "edition" | "hint" => true,
+            "seconds" => self.seconds.is_none(),
+            _ => false,
+        };
+        let Self { example, why, .. } = self;
+        if refused { Err(Error::Usage(format!("{example} takes no --{option}: {why}"))) } else { Ok(()) }
+    }
+}
 
 /// A part of the worksheet that answers no question of the sheet's. The student's edition leaves it out.
 #[derive(Debug, Clone)]

@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
 use std::process::ExitCode;
+use std::time::Duration;
 
 use lexopt::{Arg, Parser};
 
@@ -10,6 +11,8 @@ use super::{ended, options, print};
 use crate::check::{self, Attempt, Measurement, Probe, Topic};
 use crate::error::{Error, Result};
 use crate::estimate::Estimate;
+use crate::run::{Budget, Run, Shortfall};
+use crate::stream::mix;
 
 /// The `main` of an example that checks the reader's own estimators, one a topic, for the worksheet question in hand or that of `--question`.
 ///
@@ -25,10 +28,16 @@ struct Wish {
     answer: Option<String>,
     draws_from: Option<String>,
     probe: usize,
-    draws: u64,
+    budget: Option<Budget>,
     seed: u64,
     help: bool,
 }
+
+/// Draws on each probe where nothing else is asked for.
+const DRAWS: u64 = 1_000_000;
+
+/// What a probe may take where an error is asked for.
+const MOST_TIME: Duration = Duration::from_secs(5);
 
 impl Wish {
     fn read(question: &str) -> Result<Self> {
@@ -37,22 +46,48 @@ impl Wish {
             answer: None,
             draws_from: None,
             probe: 1,
-            draws: 1_000_000,
+            budget: None,
             seed: 1,
             help: false,
         };
         let mut line = Parser::from_env();
+        // of the options that are about one thing only, the last one given
+        let (mut about_estimator, mut about_draws) = (None, None);
         while let Some(argument) = line.next().map_err(options::usage)? {
             match argument {
                 Arg::Short('h') | Arg::Long("help") => wish.help = true,
                 Arg::Long("question") => wish.question = options::text(&mut line, "--question")?,
                 Arg::Long("answer") => wish.answer = Some(options::text(&mut line, "--answer")?),
                 Arg::Long("draws-from") => wish.draws_from = Some(options::text(&mut line, "--draws-from")?),
-                Arg::Long("probe") => wish.probe = options::count(&mut line, "--probe")? as usize,
-                Arg::Long("draws") => wish.draws = options::count(&mut line, "--draws")?,
-                Arg::Long("seed") => wish.seed = options::whole(&mut line, "--seed")?,
+                Arg::Long("probe") => {
+                    about_draws = Some("--probe");
+                    wish.probe = options::count(&mut line, "--probe")? as usize;
+                }
+                Arg::Long(name @ ("draws" | "error" | "seconds")) => {
+                    let name = name.to_owned();
+                    options::read_budget(&mut line, &name, &mut wish.budget)?;
+                    about_estimator = Some(format!("--{name}"));
+                }
+                Arg::Long("seed") => {
+                    about_estimator = Some("--seed".into());
+                    wish.seed = options::whole(&mut line, "--seed")?;
+                }
                 other => return Err(options::usage(other.unexpected())),
             }
+        }
+        let given = |option: bool, name| option.then_some(name);
+        let answer = given(wish.answer.is_some(), "--answer");
+        let draws_from = given(wish.draws_from.is_some(), "--draws-from");
+        let clash = |a: Option<&str>, b: Option<&str>| match (a, b) {
+            (Some(a), Some(b)) => Err(Error::Usage(format!("{a} has no use for {b}: give one of them"))),
+            _ => Ok(()),
+        };
+        clash(answer, draws_from)?;
+        clash(answer.or(draws_from), about_estimator.as_deref())?;
+        if wish.draws_from.is_none()
+            && let Some(option) = about_draws
+        {
+            return Err(Error::Usage(format!("{option} says what the draws of --draws-from are for")));
         }
         Ok(wish)
     }
@@ -87,11 +122,47 @@ impl Wish {
                 given.join(" and ")
             )));
         };
-        let diagnosis = check::diagnose(&check::measure(mine, self.draws, self.seed)?)?;
+        let (measurements, shortfall) = self.measure(mine)?;
+        let draws = measurements.iter().map(|measurement| measurement.estimate.draws());
+        let draws = match (draws.clone().min(), draws.max()) {
+            (Some(fewest), Some(most)) if fewest < most => format!("{fewest} to {most}"),
+            (fewest, _) => fewest.unwrap_or_default().to_string(),
+        };
+        let cut_short = shortfall.map_or(String::new(), |shortfall| {
+            format!("Cut short: {shortfall} on a probe. Ask for a larger error, or give a time: --seconds.\n")
+        });
+        let diagnosis = check::diagnose(&measurements)?;
         Ok(format!(
-            "Question {}, {} draws a probe, seed {}.\n{diagnosis}",
-            self.question, self.draws, self.seed
+            "Question {}, {draws} draws a probe, seed {}.\n{cut_short}{diagnosis}",
+            self.question, self.seed
         ))
+    }
+
+    /// The reader's estimator on every probe, and what the probe that is the furthest from the error asked for would have taken.
+    fn measure(&self, mine: &Attempt<'_>) -> Result<(Vec<Measurement>, Option<Shortfall>)> {
+        let probes = mine.topic().probes();
+        let (mut measurements, mut shortfall) = (Vec::new(), None::<Shortfall>);
+        let budget = match self.budget.unwrap_or(Budget::Draws(DRAWS)) {
+            Budget::Draws(draws) => return Ok((check::measure(mine, draws, self.seed)?, None)),
+            budget => budget,
+        };
+        for (index, probe) in (1..).zip(probes) {
+            // ratios are judged, so the error asked for is theirs
+            let budget = match budget {
+                Budget::StdError(error) => Budget::StdError(error * probe.unit().abs()),
+                other => other,
+            };
+            // as in `check::measure`
+            let seed = mix(self.seed.wrapping_add(mix(index)));
+            let run = Run::new(seed).max_draws(u64::MAX).max_time(MOST_TIME);
+            let outcome = run.estimate(&mine.at(probe)?, budget)?;
+            measurements.push(Measurement { probe: *probe, estimate: outcome.estimate });
+            let as_ratio =
+                |short: Shortfall| Shortfall { std_error: short.std_error / probe.unit().abs(), ..short };
+            let further = |short: &Shortfall| shortfall.is_none_or(|before| short.draws > before.draws);
+            shortfall = outcome.shortfall.map(as_ratio).filter(further).or(shortfall);
+        }
+        Ok((measurements, shortfall))
     }
 
     fn judge_draws(&self, file: &str) -> Result<String> {
@@ -151,4 +222,7 @@ Options
     --draws-from FILE    judge these draws, one a line (- for standard input), made for --probe
     --probe N            which of the question's probes the draws were made for (1)
     --draws N            draws of your estimator on each probe (1000000)
+    --error E            instead: draws until the ratio to the truth has the std error E, by a pilot run: never
+                         fewer than the pilot's, and about 5 s of them a probe at most
+    --seconds S          instead: draws for S seconds a probe
     --seed S             their seed (1)";

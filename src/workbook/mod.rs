@@ -31,6 +31,7 @@ mod section5;
 mod value;
 
 use std::process::ExitCode;
+use std::time::Duration;
 
 pub use answer::{Answer, Kind};
 pub use appendix::{Appendix, Table};
@@ -43,7 +44,9 @@ pub(crate) use print::shortened;
 
 use crate::error::{Error, Result};
 use crate::figure::{Edition, write_whole};
-use options::Request;
+use crate::run::Budget;
+use appendix::Beside;
+use options::{Asked, Request};
 
 /// One question of the worksheet, with all that is known about it before anything is run.
 ///
@@ -124,7 +127,9 @@ pub type AnswerFn = fn(&Options) -> Result<Vec<Answer>>;
 /// An example's `main`: reads the command line, answers the question, prints the answers and saves their figures.
 pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
     ended(question(id).and_then(|question| {
-        let Some(options) = Request::read(&[question])?.options(&[question])? else { return Ok(()) };
+        let questions = [question];
+        let asked = Asked::Questions(&questions);
+        let Some(options) = Request::read(asked)?.options(asked)? else { return Ok(()) };
         let options = options.for_question(question);
         options.with_out(|| print::answers(question, &answer(&options)?, &options))
     }))
@@ -133,20 +138,24 @@ pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
 /// What an example beside the questions does.
 pub type AppendixFn = fn(&Options) -> Result<Appendix>;
 
-/// The `main` of an example beside the questions: reads the command line, prints the tables and saves the figures.
-pub fn appendix(appendix: AppendixFn) -> ExitCode {
-    ended(Request::read(&[]).and_then(|request| {
-        let Some(options) = request.options(&[])? else { return Ok(()) };
+/// The `main` of this example beside the questions: reads the command line, prints the tables and saves the figures.
+pub fn appendix(example: &str, appendix: AppendixFn) -> ExitCode {
+    ended(appendix::beside(example).and_then(|beside| {
+        let asked = Asked::Beside(beside);
+        let Some(options) = Request::read(asked)?.options(asked)? else { return Ok(()) };
         options.with_out(|| print::appendix(&appendix(&options)?, true, &options))
     }))
 }
 
 /// The worksheet's `main`: answers all these questions, and writes `index.html` with all of it and the appendices.
-pub fn worksheet(answers: &[(&str, AnswerFn)], appendices: &[AppendixFn]) -> ExitCode {
+///
+/// Under `--seconds` an appendix has at most a tenth of a second for each of its many estimators.
+pub fn worksheet(answers: &[(&str, AnswerFn)], appendices: &[(&str, AppendixFn)]) -> ExitCode {
     let asked = answers.iter().map(|(id, answer)| Ok((question(id)?, *answer))).collect::<Result<Vec<_>>>();
     ended(asked.and_then(|asked| {
         let questions: Vec<_> = asked.iter().map(|(question, _)| *question).collect();
-        let Some(options) = Request::read(&questions)?.options(&questions)? else { return Ok(()) };
+        let all = Asked::Questions(&questions);
+        let Some(options) = Request::read(all)?.options(all)? else { return Ok(()) };
         options.with_out(|| {
             let mut answered = Vec::new();
             for (question, answer) in &asked {
@@ -157,8 +166,8 @@ pub fn worksheet(answers: &[(&str, AnswerFn)], appendices: &[AppendixFn]) -> Exi
             }
             let mut beside = Vec::new();
             if options.edition == Edition::Solution {
-                for appendix in appendices {
-                    let appendix = appendix(&options)?;
+                for (example, appendix) in appendices {
+                    let appendix = within_reason(appendix::beside(example)?, *appendix, &options)?;
                     // their numbers for programs are what their own examples give
                     print::appendix(&appendix, !options.json, &options)?;
                     beside.push(appendix);
@@ -170,6 +179,27 @@ pub fn worksheet(answers: &[(&str, AnswerFn)], appendices: &[AppendixFn]) -> Exi
         })
     }))
 }
+
+/// An appendix in the time that it may take beside the questions; its text says so where that is less than what is asked for.
+fn within_reason(beside: &Beside, appendix: AppendixFn, options: &Options) -> Result<Appendix> {
+    match options.budget {
+        Some(Budget::Time(time)) if time > MOST_TIME_BESIDE && beside.seconds.is_some() => {
+            let mut shorter = options.clone();
+            shorter.budget = Some(Budget::Time(MOST_TIME_BESIDE));
+            let mut appendix = appendix(&shorter)?;
+            let (most, asked) = (MOST_TIME_BESIDE.as_secs_f64(), value::parseable(time.as_secs_f64()));
+            appendix.text += &format!(
+                " Here it is {most} s each at most; \"cargo run --release --example {} -- --seconds {asked}\" takes the time asked for.",
+                beside.example
+            );
+            Ok(appendix)
+        }
+        _ => appendix(options),
+    }
+}
+
+/// For each estimator of an appendix, of which there may be a hundred.
+const MOST_TIME_BESIDE: Duration = Duration::from_millis(100);
 
 /// 0 for success, 2 for bad arguments, 1 for a failed run; the reason on standard error, in one sentence.
 fn ended(result: Result<()>) -> ExitCode {
@@ -191,4 +221,38 @@ fn ended(result: Result<()>) -> ExitCode {
 /// Whether an answer may be shown in this edition.
 fn shown(answer: &Answer, edition: Edition) -> bool {
     edition == Edition::Solution || answer.kind() == Kind::Answer
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seconds_given(options: &Options) -> Result<Appendix> {
+        Ok(Appendix {
+            example: "trade",
+            title: "",
+            text: format!("{:?}.", options.budget),
+            tables: Vec::new(),
+            records: Vec::new(),
+            figures: Vec::new(),
+        })
+    }
+
+    #[test]
+    fn an_appendix_has_its_own_time_inside_the_worksheet_and_says_so() {
+        let text = |example, budget| {
+            let mut options = Options::default();
+            options.budget = budget;
+            within_reason(appendix::beside(example).unwrap(), seconds_given, &options).unwrap().text
+        };
+        let time = |seconds| Some(Budget::Time(Duration::from_secs_f64(seconds)));
+        assert_eq!(
+            text("trade", time(2.5)),
+            "Some(Time(100ms)). Here it is 0.1 s each at most; \"cargo run --release --example trade -- --seconds 2.5\" takes the time asked for."
+        );
+        assert_eq!(text("trade", time(0.1)), "Some(Time(100ms)).");
+        assert_eq!(text("trade", time(0.02)), "Some(Time(20ms)).");
+        assert_eq!(text("trade", None), "None.");
+        assert_eq!(text("extremes", time(2.0)), "Some(Time(2s)).");
+    }
 }

@@ -1,13 +1,17 @@
 //! The command line that all examples share.
 
 use std::cell::OnceCell;
+use std::collections::BTreeSet;
 use std::io::IsTerminal;
+use std::mem;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use lexopt::{Arg, Parser};
 
+use super::appendix::Beside;
+use super::value::parseable;
 use super::{Answer, Question, Value, print};
 use crate::box_room::Scene;
 use crate::error::{Error, Result};
@@ -21,7 +25,7 @@ pub struct Options {
     pub budget: Option<Budget>,
     /// The seed of every random number; 1 if none is given.
     pub seed: u64,
-    /// Threads to run on; one a core if none is given. The results are the same.
+    /// Threads to run on; one a core if none is given. For the same draws the results are the same.
     pub threads: Option<usize>,
     /// Where figures and pages go; `worksheet/` if none is given.
     pub out: PathBuf,
@@ -48,6 +52,15 @@ impl Default for Options {
     }
 }
 
+/// Whose command line it is.
+#[derive(Clone, Copy)]
+pub(super) enum Asked<'q> {
+    /// That of these questions, one or all.
+    Questions(&'q [&'static Question]),
+    /// That of an example beside them.
+    Beside(&'static Beside),
+}
+
 /// What the command line asks for.
 pub(super) enum Request {
     Help,
@@ -57,39 +70,40 @@ pub(super) enum Request {
 
 impl Request {
     /// The options of a run; help and hints are printed at once.
-    pub fn options(self, questions: &[&Question]) -> Result<Option<Options>> {
-        match self {
-            Self::Help => print::help(questions).map(|()| None),
-            Self::Hint => print::hints(questions).map(|()| None),
-            Self::Run(options) => Ok(Some(options)),
+    pub fn options(self, asked: Asked<'_>) -> Result<Option<Options>> {
+        match (self, asked) {
+            (Self::Run(options), _) => Ok(Some(options)),
+            (Self::Help, Asked::Questions(questions)) => print::help(questions).map(|()| None),
+            (_, Asked::Beside(beside)) => print::help_beside(beside).map(|()| None),
+            (Self::Hint, Asked::Questions(questions)) => print::hints(questions).map(|()| None),
         }
     }
 
-    /// Reads this program's command line, with the options of these questions beside the common ones.
-    pub fn read(questions: &[&'static Question]) -> Result<Self> {
-        Self::parse(Parser::from_env(), questions)
+    /// Reads this program's command line, with the questions' own options beside the common ones.
+    pub fn read(asked: Asked<'_>) -> Result<Self> {
+        Self::parse(Parser::from_env(), asked)
     }
 
-    pub fn parse(mut line: Parser, questions: &[&'static Question]) -> Result<Self> {
+    pub fn parse(mut line: Parser, asked: Asked<'_>) -> Result<Self> {
         let mut options = Options::default();
+        let questions = match asked {
+            Asked::Questions(questions) => questions,
+            Asked::Beside(_) => &[],
+        };
         while let Some(argument) = line.next().map_err(usage)? {
             let name = match argument {
                 Arg::Short('h') => return Ok(Self::Help),
                 Arg::Long(name) => name.to_owned(),
                 other => return Err(usage(other.unexpected())),
             };
+            if let Asked::Beside(beside) = asked {
+                beside.take(&name)?;
+            }
             match name.as_str() {
                 "help" => return Ok(Self::Help),
                 "hint" => return Ok(Self::Hint),
                 "json" => options.json = true,
-                "draws" => options.budget = Some(Budget::Draws(count(&mut line, "--draws")?)),
-                "error" => options.budget = Some(Budget::StdError(positive(&mut line, "--error")?)),
-                "seconds" => {
-                    let seconds = positive(&mut line, "--seconds")?;
-                    let time = Duration::try_from_secs_f64(seconds);
-                    let too_long = |_| Error::Usage(format!("--seconds takes fewer than {seconds} seconds"));
-                    options.budget = Some(Budget::Time(time.map_err(too_long)?));
-                }
+                "draws" | "error" | "seconds" => read_budget(&mut line, &name, &mut options.budget)?,
                 "seed" => options.seed = whole(&mut line, "--seed")?,
                 "threads" => options.threads = Some(count(&mut line, "--threads")? as usize),
                 "out" => options.out = line.value().map_err(usage)?.into(),
@@ -109,6 +123,21 @@ impl Request {
         }
         Ok(Self::Run(options))
     }
+}
+
+/// Reads the value of --draws, --error or --seconds, of which there may be one.
+pub(super) fn read_budget(line: &mut Parser, name: &str, budget: &mut Option<Budget>) -> Result<()> {
+    let read = match name {
+        "draws" => Budget::Draws(count(line, "--draws")?),
+        "error" => Budget::StdError(positive(line, "--error")?),
+        _ => Budget::Time(seconds(line)?),
+    };
+    // of the same option the last one counts, as of any other
+    if budget.is_some_and(|given| mem::discriminant(&given) != mem::discriminant(&read)) {
+        return Err(Error::Usage("--draws, --error and --seconds each end a run: give one of them".into()));
+    }
+    *budget = Some(read);
+    Ok(())
 }
 
 /// A command line that was not understood.
@@ -134,9 +163,20 @@ pub(super) fn count(line: &mut Parser, name: &str) -> Result<u64> {
 }
 
 fn positive(line: &mut Parser, name: &str) -> Result<f64> {
-    let given = text(line, name)?;
+    number_above_zero(&text(line, name)?, name)
+}
+
+fn number_above_zero(given: &str, name: &str) -> Result<f64> {
     let number = given.parse::<f64>().ok().filter(|number| *number > 0.0 && number.is_finite());
     number.ok_or_else(|| Error::Usage(format!("{name} takes a positive number, not \"{given}\"")))
+}
+
+/// A time that a clock can tell from none, and count up to.
+fn seconds(line: &mut Parser) -> Result<Duration> {
+    let given = text(line, "--seconds")?;
+    let seconds = number_above_zero(&given, "--seconds")?;
+    let time = Duration::try_from_secs_f64(seconds).ok().filter(|time| !time.is_zero());
+    time.ok_or_else(|| Error::Usage(format!("--seconds takes a number from 1e-9 to 1e19, not \"{given}\"")))
 }
 
 fn edition(name: &str) -> Result<Edition> {
@@ -206,11 +246,12 @@ impl Options {
         if value >= 0.0 && value < u64::MAX as f64 && value.fract() == 0.0 {
             Ok(value as u64)
         } else {
-            Err(Error::Usage(format!("--{name} takes a whole number, not {value}")))
+            Err(Error::Usage(format!("--{name} takes a whole number, not {}", parseable(value))))
         }
     }
 
-    /// Runs an estimator until the budget that the options name is spent, `draws` times where they name none, with a progress bar on a terminal.
+    /// Runs an estimator until the budget that the options name is spent, `draws` times where they name none, with a progress bar on a terminal. An error
+    /// that is out of reach of five seconds' draws is not reached: the row says so.
     ///
     /// # Errors
     /// Those of [`Run::estimate`].
@@ -223,7 +264,7 @@ impl Options {
                 bar.get_or_init(|| progress_bar(total)).set_position(done);
             }
         };
-        let mut run = Run::new(self.seed).progress(&progress);
+        let mut run = Run::new(self.seed).max_draws(u64::MAX).max_time(MOST_TIME).progress(&progress);
         if let Some(threads) = self.threads {
             run = run.threads(threads);
         }
@@ -267,24 +308,47 @@ impl Options {
         changed.collect::<Vec<_>>().join(", ")
     }
 
-    /// The command that repeats this answer.
-    pub(super) fn command(&self, question: &Question) -> String {
+    /// The command that repeats these answers, and a remark where no single one does.
+    pub(super) fn command<'a>(
+        &self,
+        question: &Question,
+        answers: impl Iterator<Item = &'a Answer> + Clone,
+    ) -> (String, Option<&'static str>) {
         let mut command = format!("cargo run --release --example {} --", question.example);
         for parameter in question.parameters {
             let value = self.value(parameter.name).unwrap_or(parameter.default);
             command += &format!(" --{} {value}", parameter.name);
         }
-        match self.budget {
-            Some(Budget::Draws(draws)) => command += &format!(" --draws {draws}"),
-            Some(Budget::StdError(error) | Budget::RelativeError(error)) => {
-                command += &format!(" --error {error}")
+        let cut_short = answers.clone().any(|answer| answer.shortfall().is_some());
+        let mut remark = None;
+        command += &match self.budget {
+            None => String::new(),
+            Some(Budget::Draws(draws)) => format!(" --draws {draws}"),
+            Some(Budget::StdError(error) | Budget::RelativeError(error)) if !cut_short => {
+                format!(" --error {}", parseable(error))
             }
-            Some(Budget::Time(time)) => command += &format!(" --seconds {}", time.as_secs_f64()),
-            None => {}
-        }
-        command + &format!(" --seed {}", self.seed)
+            // the clock decided how many draws there are, and will decide otherwise next time
+            Some(_) => {
+                let draws = answers.filter_map(Answer::estimate).map(|estimate| estimate.draws());
+                let draws: Vec<u64> = draws.collect::<BTreeSet<_>>().into_iter().collect();
+                match draws[..] {
+                    [] => String::new(),
+                    [draws] => format!(" --draws {draws}"),
+                    _ => {
+                        remark = Some(
+                            "where N is the number of draws of the row to be repeated: the clock gave each its own",
+                        );
+                        " --draws N".into()
+                    }
+                }
+            }
+        };
+        (command + &format!(" --seed {}", self.seed), remark)
     }
 }
+
+/// What a row may take where an error is asked for, the pilot's first draws apart.
+const MOST_TIME: Duration = Duration::from_secs(5);
 
 fn progress_bar(total: Option<u64>) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {human_pos} of {human_len} draws, {eta} to go");

@@ -85,6 +85,7 @@ fn article(question: &'static Question, answers: &[Answer], options: &Options) -
     let formulas = question.latex.iter().map(|latex| mathml(latex)).collect::<Result<Vec<_>>>()?;
     let answers: Vec<&Answer> = answers.iter().filter(|answer| shown(answer, edition)).collect();
     let figures = answers.iter().flat_map(|answer| answer.figures(edition));
+    let (command, remark) = options.command(question, answers.iter().copied());
     Ok(html! {
         article id={ "q" (question.id) } {
             h3 { (question.id) " " (prose(question.title)) }
@@ -96,6 +97,7 @@ fn article(question: &'static Question, answers: &[Answer], options: &Options) -
                     (numbers(&answers, &options))
                 }
                 @for answer in &answers {
+                    @if let Some(sentence) = print::cut_short(answer) { p { (answer.what()) ": " (sentence) } }
                     @if let Some(sentence) = answer.sentence() { p { (prose(sentence)) } }
                 }
             }
@@ -116,7 +118,7 @@ fn article(question: &'static Question, answers: &[Answer], options: &Options) -
                 @if let Some(note) = question.on_the_original {
                     aside { strong { "On the original sheet. " } (prose(note)) }
                 }
-                p.command { code { (options.command(question)) } }
+                p.command { code { (command) } @if let Some(remark) = remark { " " (remark) } }
             }
         }
     })
@@ -160,7 +162,9 @@ fn numbers(answers: &[&Answer], options: &Options) -> Markup {
                                 @if answer.estimate().is_some() { (print::interval(answer)) }
                                 @else if let Some(value) = answer.found() { (print::shortened(value)) }
                             }
-                            td.number { @if let Some(z) = answer.z() { (format!("{z:.2}").replace('-', "−")) }
+                            td.number {
+                                @if answer.too_few_draws() { (print::TOO_FEW) }
+                                @else if let Some(z) = answer.z() { (format!("{z:.2}").replace('-', "−")) }
                                 @match answer.agrees() { Some(true) => " ✓", Some(false) => " ✗", None => "" } }
                             td.number { @if let Some(estimate) = answer.estimate() { (grouped(estimate.draws())) } }
                         }

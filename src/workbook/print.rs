@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::appendix::Beside;
 use super::{Answer, Appendix, Kind, Options, Question, shown};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, rounded};
 use crate::figure::Edition;
 
 /// Prints the answers to one question and saves their figures.
@@ -163,7 +164,11 @@ fn text(question: &Question, rows: &[(&Answer, Vec<PathBuf>)], options: &Options
         }
     }
     if options.edition == Edition::Solution {
-        writeln!(out, "\n    again        {}", options.command(question))?;
+        let (command, remark) = options.command(question, rows.iter().map(|(answer, _)| *answer));
+        writeln!(out, "\n    again        {command}")?;
+        if let Some(remark) = remark {
+            writeln!(out, "                 {remark}")?;
+        }
     }
     Ok(())
 }
@@ -182,8 +187,12 @@ fn solution(out: &mut impl Write, answer: &Answer, varied: &[&str]) -> io::Resul
         if estimate.draws() > 1 {
             write!(out, " (95 %)")?;
         }
-        if let Some(z) = answer.z() {
+        let too_few = answer.too_few_draws();
+        if let Some(z) = answer.z().filter(|z| !too_few || z.is_finite()) {
             write!(out, "   z = {z:.2}")?;
+        }
+        if too_few {
+            write!(out, "   {TOO_FEW}")?;
         }
         match answer.agrees() {
             Some(true) => write!(out, "   ✓")?,
@@ -203,10 +212,22 @@ fn solution(out: &mut impl Write, answer: &Answer, varied: &[&str]) -> io::Resul
     } else if let Some(value) = answer.found() {
         writeln!(out, "        found    {}", shortened(value))?;
     }
-    if let Some(note) = answer.sentence() {
+    for note in cut_short(answer).as_deref().into_iter().chain(answer.sentence()) {
         wrapped(out, note)?;
     }
     Ok(())
+}
+
+/// Instead of ✓ or ✗.
+pub(super) const TOO_FEW: &str = "too few draws to judge";
+
+/// What a row says that did not reach the error asked for.
+pub(super) fn cut_short(answer: &Answer) -> Option<String> {
+    let (shortfall, reached) = (answer.shortfall()?, answer.estimate()?.std_error()?);
+    Some(format!(
+        "Cut short at a std error of {}: {shortfall}. Ask for a larger error, or give a time: --seconds.",
+        rounded(reached, 2)
+    ))
 }
 
 /// `mean ± half-width` of the 95 % interval
@@ -257,6 +278,19 @@ pub(super) fn hints(questions: &[&Question]) -> Result<()> {
     questions.iter().try_for_each(print).or_else(until_the_pipe_closes)
 }
 
+/// `--help` of an example beside the questions
+pub(super) fn help_beside(beside: &Beside) -> Result<()> {
+    let mut text = format!("{}\n\nOptions\n", beside.about);
+    if let Some(seconds) = beside.seconds {
+        text += &format!("    --seconds S          {seconds}\n");
+    }
+    text += "    --seed S             seed of all random numbers (1)
+    --out DIR            folder for figures (worksheet)
+    --json               one JSON object a line
+";
+    write!(io::stdout(), "{text}").or_else(until_the_pipe_closes)
+}
+
 /// `--help`
 pub(super) fn help(questions: &[&Question]) -> Result<()> {
     let mut text = String::new();
@@ -267,10 +301,15 @@ pub(super) fn help(questions: &[&Question]) -> Result<()> {
     }
     text += "Options
     --draws N            draws of every estimator (default: each question's own number)
-    --error E            draws until the std error is E, by a pilot run (in the units of the answer)
+    --error E            draws until the std error is E, in the units of the answer, by a pilot run: never fewer
+                         than the pilot's (10⁶ where they are cheap), and about 5 s of them a row at most
     --seconds S          draws for S seconds an estimator
-    --seed S             seed of all random numbers (1)
-    --threads T          threads (one a core; the results are the same for any number)
+";
+    if questions.len() > 1 {
+        text += "                         (0.1 s at most where many are compared, in the last part of the page)\n";
+    }
+    text += "    --seed S             seed of all random numbers (1)
+    --threads T          threads (one a core; for the same draws the results are the same for any number)
     --out DIR            folder for figures and pages (worksheet)
     --json               one JSON object a line
     --edition NAME       student or solution (solution)

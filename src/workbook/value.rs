@@ -71,10 +71,10 @@ impl Value {
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Number(number) => write!(f, "{number}"),
+            Self::Number(number) => f.write_str(&parseable(*number)),
             Self::Limit(Some(count)) => write!(f, "{count}"),
             Self::Limit(None) => write!(f, "all"),
-            Self::Point([x, y, z]) => write!(f, "{x},{y},{z}"),
+            Self::Point(point) => f.write_str(&point.map(parseable).join(",")),
         }
     }
 }
@@ -97,6 +97,12 @@ impl From<[f64; 3]> for Value {
     }
 }
 
+/// All digits of a number, in the shorter form where the plain one is long: either is read back as the same number.
+pub(super) fn parseable(number: f64) -> String {
+    let (plain, scientific) = (number.to_string(), format!("{number:e}"));
+    if plain.len() <= 12 || plain.len() <= scientific.len() { plain } else { scientific }
+}
+
 /// A number or a fraction of two: `0.8`, `4/5`.
 fn number(text: &str) -> Option<f64> {
     match text.split_once('/') {
@@ -114,11 +120,15 @@ mod tests {
         for value in [
             Value::Number(0.8),
             Value::Number(-1e-300),
+            Value::Number(f64::MAX),
+            Value::Number(5e-324),
+            Value::Number(1.0 / 3.0),
             Value::Limit(Some(15)),
             Value::Limit(None),
             Value::Point([0.0, -0.25, 1.0]),
         ] {
-            assert_eq!(value.read_alike(&value.to_string()), Some(value));
+            let text = value.to_string();
+            assert!(value.read_alike(&text) == Some(value) && text.len() <= 23, "{text}");
         }
         assert_eq!(Value::Number(0.0).read_alike("4/5"), Some(Value::Number(0.8)));
         assert_eq!(Value::Point([0.0; 3]).read_alike("0,1/4,1"), Some(Value::Point([0.0, 0.25, 1.0])));
