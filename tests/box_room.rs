@@ -735,12 +735,12 @@ fn degenerate_polygons_fill_nothing() {
     for (half, z) in [(1.7e308, 1e308), (f64::MAX, f64::MAX), (f64::MAX, 1e300)] {
         let exact = 4.0 * howell_parallel(half / z, half / z, 1.0);
         let given = form_factor(&rectangle([-half, half], [-half, half], z), DVec3::ZERO, DVec3::Z);
-        assert!((given - exact).abs() <= 2e-15, "{half}: {given} for {exact}");
+        assert!((given - exact).abs() <= 2e-15, "{half:e}: {given} for {exact}");
         // from a point as far below the origin, and off to the side
         let given =
             form_factor(&rectangle([0.0, half], [-half, half], z), DVec3::new(-half, 0.0, -z), DVec3::Z);
         let exact = 2.0 * (howell_parallel(half, half / 2.0, z) - howell_parallel(half / 2.0, half / 2.0, z));
-        assert!((given - exact).abs() <= 2e-15, "{half}: {given} for {exact}");
+        assert!((given - exact).abs() <= 2e-15, "{half:e}: {given} for {exact}");
     }
     // coordinates whose squares leave f64
     for scale in [1e-300, 1e-170, 1e160, 1e300] {
@@ -880,7 +880,7 @@ fn two_bounces_are_known_to_1e_12() {
     assert!(worst <= 1e-12, "{worst:e}");
     // no jump where the cells change, or where they can be no smaller; L₂ rises by 0.13 of itself a metre at the end, and by 1.6 or less elsewhere
     let steps = [0.9999999999, 1.0, 1.0000000001, 1.0000000002];
-    let last = [1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 0.0].map(|d| 2.0 - d);
+    let last = [1e-9, 1e-11, 1e-13, 0.0].map(|d| 2.0 - d);
     for h in [&steps[..], &last[..]] {
         for pair in h.windows(2) {
             let (one, other) = (of(pair[0], [0.1, 0.3]), of(pair[1], [0.1, 0.3]));

@@ -465,7 +465,7 @@ proptest! {
                 let [low, high] = hit.face().bounds();
                 prop_assert!(hit.position().cmpge(low).all() && hit.position().cmple(high).all(), "{hit:?}");
             }
-            None => prop_assert!(!direction.is_finite() || direction == DVec3::ZERO || !(from.normal().dot(direction) >= 0.0)),
+            None => prop_assert!(!direction.is_finite() || direction == DVec3::ZERO || from.normal().dot(direction) < 0.0),
         }
         let to = DVec3::from_array(to);
         prop_assert!(to.is_finite() || !visible(&from, to));
