@@ -52,7 +52,7 @@ impl Value {
     pub(super) fn json(self) -> serde_json::Value {
         match self {
             Self::Number(number) => json!(number),
-            Self::Limit(limit) => json!(limit),
+            Self::Limit(limit) => limit.map_or_else(|| json!("all"), |most| json!(most)),
             Self::Point(point) => json!(point),
         }
     }
