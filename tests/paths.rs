@@ -1062,19 +1062,59 @@ fn a_caution_says_when_the_variance_may_be_infinite() {
     // by weight: never with cosine directions; with uniform ones from ρ² = 3/4 on
     assert_eq!(says(with(0.5, 0.99, 0.5), AllByWeight, WAYS[0]), None);
     assert_eq!(says(with(0.5, 0.86, 0.5), AllByWeight, WAYS[1]), None);
-    assert!(
-        says(with(0.5, 0.87, 0.5), AllByWeight, WAYS[1])
-            .unwrap()
-            .contains("q = 1 is not above (4/3)ρ² = 1.0092")
+    assert_eq!(
+        says(with(0.5, 0.87, 0.5), AllByWeight, WAYS[1]).unwrap(),
+        "the variance may be infinite, and the error bar too short: the squared weight of a path grows by (4/3)ρ² = 1.0092 a bounce for the largest albedo, and nothing ends a path of weight 1 or more"
     );
-    // a number of bounces ends every path
-    assert_eq!(says(with(1.0, 1.0, 0.5), UpTo(64), WAYS[1]), None);
+    // a number of bounces ends every path, but uniform directions make weights that vary too much: from 24 of them on, (9/5)²⁴ = 1.3e6
+    let few = |draws: &str| {
+        Some(format!(
+            "uniform directions make most weights far too small and a few very large, so that the error bar of fewer than about {draws} draws means nothing"
+        ))
+    };
+    for albedo in [1.0, 0.5, 1e-3] {
+        let scene = with(albedo, albedo, 0.5);
+        assert_eq!(says(scene, Exactly(24), (Uniform, BySampling)), None);
+        assert_eq!(says(scene, Exactly(25), (Uniform, BySampling)), few("1e6"));
+        assert_eq!(says(scene, Exactly(64), (Uniform, BySampling)), few("1e16"));
+        let furnace = Scene { emission: 1.0, light_half_width: 0.0, ..scene };
+        assert_eq!(says(furnace, Exactly(23), (Uniform, ByChance)), None);
+        assert_eq!(says(furnace, Exactly(24), (Uniform, ByChance)), few("1e6"));
+        for light in FindLight::ALL {
+            assert_eq!(says(scene, Exactly(64), (Cosine, light)), None);
+            assert_eq!(says(scene, UpTo(64), (Cosine, light)), None);
+        }
+    }
+    // a sum is no worse than its terms: with an albedo that makes the first ones the largest there is nothing to say
+    assert_eq!(says(with(0.5, 0.5, 0.5), UpTo(64), WAYS[1]), None);
+    assert_eq!(says(with(1.0, 1.0, 0.5), UpTo(12), WAYS[1]), None);
+    assert!(says(with(1.0, 1.0, 0.5), UpTo(64), WAYS[1]).unwrap().contains("uniform directions"));
+    // a light that one path in 100 finds, in 1e6 of them, and in more
+    assert_eq!(says(with(0.5, 0.5, 0.5), Exactly(15), (Uniform, ByChance)), None);
+    assert_eq!(
+        says(with(0.5, 0.5, 0.5), Exactly(16), (Uniform, ByChance)).unwrap(),
+        "uniform directions make most weights far too small and a few very large, and few paths find the light, so that the error bar of fewer than about 1e6 draws means nothing"
+    );
+    assert_eq!(says(with(0.5, 0.5, 0.00501), Exactly(1), (Cosine, ByChance)), None);
+    assert_eq!(
+        says(with(0.5, 0.5, 0.0005), Exactly(1), (Cosine, ByChance)).unwrap(),
+        "few paths find the light, so that the error bar of fewer than about 1e8 draws means nothing"
+    );
+    assert_eq!(says(with(0.5, 0.5, 0.0), Exactly(1), (Cosine, ByChance)), None);
+    assert_eq!(says(with(0.5, 0.5, 0.0005), UpTo(0), (Cosine, ByChance)), None);
+    let lit = Scene { emission: 1.0, ..with(0.5, 0.5, 0.0005) };
+    assert_eq!(says(lit, AllByWeight, (Cosine, ByChance)), None);
     // a light that touches the walls, sampled from there
     let told = "the variance may be infinite, and the error bar too short: the light touches the walls, where its samples weigh without bound";
     for bounces in [UpTo(2), Exactly(2), All(0.9), AllByWeight] {
         assert_eq!(says(with(0.5, 0.5, 2.0), bounces, WAYS[0]).unwrap(), told);
         assert_eq!(says(with(0.5, 0.5, 2.0), bounces, WAYS[2]), None);
-        assert_eq!(says(with(0.5, 0.5, 2f64.next_down()), bounces, WAYS[0]), None);
+        // one that all but does: 8/(2 − h)³
+        assert_eq!(says(with(0.5, 0.5, 1.979), bounces, WAYS[0]), None);
+        let told = "the light is so near the walls that a few of its samples outweigh all others, so that the error bar of fewer than about 8e9 draws means nothing";
+        assert_eq!(says(with(0.5, 0.5, 1.999), bounces, WAYS[0]).unwrap(), told);
+        assert_eq!(says(with(0.5, 0.5, 1.999), bounces, WAYS[2]), None);
+        assert!(says(with(0.5, 0.5, 2f64.next_down()), bounces, WAYS[0]).is_some());
     }
     assert_eq!(says(with(0.5, 0.5, 2.0), UpTo(1), WAYS[0]), None);
 }
@@ -1109,7 +1149,8 @@ fn bad_paths_are_errors() {
     for (wall_albedo, cube_albedo, shown) in
         [(1.0, 0.5, "1"), (0.5, 1.0, "1"), (0.9990000000000001, 0.2, "0.9990000000000001")]
     {
-        let rest = "at most 0.999 where nothing but absorption ends a path (or choose a q)";
+        let rest =
+            "at most 0.999 where nothing but absorption ends a path (or choose a q or a number of bounces)";
         let scene = Scene { wall_albedo, cube_albedo, ..Scene::default() };
         says(scene, AllByWeight, &format!("the largest albedo must be {rest}, not {shown}"));
         assert!(new(scene, All(0.9999)).is_ok() && new(scene, UpTo(64)).is_ok());
