@@ -3,107 +3,211 @@
 use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
 use super::{Edition, Figure};
 use crate::error::Result;
-use crate::trade::{Comparison, Measured, Nature};
+use crate::trade::{Comparison, Measured, Nature, two_digits};
 
-/// Up to four rivals.
-const STYLES: [(Ink, Marker); 4] = [
+/// An ink, which has a dash of its own, and a marker a rival: the first eight differ in two of three in colour, and in dash or marker in grey.
+const STYLES: [(Ink, Marker); 16] = [
     (Ink::Blue, Marker::Disc),
     (Ink::Vermilion, Marker::Square),
     (Ink::Green, Marker::Triangle),
     (Ink::Purple, Marker::Cross),
+    (Ink::Blue, Marker::Ring),
+    (Ink::Vermilion, Marker::Cross),
+    (Ink::Green, Marker::Square),
+    (Ink::Purple, Marker::Triangle),
+    (Ink::Blue, Marker::Square),
+    (Ink::Vermilion, Marker::Triangle),
+    (Ink::Green, Marker::Disc),
+    (Ink::Purple, Marker::Ring),
+    (Ink::Blue, Marker::Triangle),
+    (Ink::Vermilion, Marker::Disc),
+    (Ink::Green, Marker::Cross),
+    (Ink::Purple, Marker::Square),
 ];
 
-/// The root mean square errors of up to four rivals against draws, against counted work and against seconds, with the factor in time between the best and the worst written
-/// on the last. `name` is the file's, `title` says what is compared.
+/// Letters of a name that fit beside a panel.
+const LETTERS: usize = 30;
+
+/// Powers of ten that the axes of draws, work and time span, to the right of their beginning.
+const SPAN: f64 = 9e4;
+
+/// A rival with how it is drawn.
+type Drawn<'a> = (&'a Measured, (Ink, Marker));
+
+/// The root mean square errors √(β² + σ² t/T) of the rivals against draws, against counted work and against seconds, and their efficiencies 1/(σ² t), which name the lines. An arrow in the panel of
+/// seconds spans the factor between the slowest and the fastest at the same error, where that difference is real.
+///
+/// Work is evaluations where every rival counts them, else random numbers. What has no line, such as an infinite variance, is named all the same; where a bias is not seen, the line
+/// ends at the error down to which it is known. Sixteen rivals can be drawn: the description names those left out. `name` is the file's, `title` says what is compared.
 ///
 /// # Errors
 /// If it cannot be drawn.
+///
+/// ```
+/// use unbiased::trade::{Rival, Trade};
+/// use unbiased::{figure, from_fn};
+///
+/// let one = from_fn(|rng| rng.uniform().sqrt());
+/// let two = from_fn(|rng| 0.5 * (rng.uniform().sqrt() + rng.uniform().sqrt()));
+/// let found = Trade::new(1, 2.0 / 3.0)?.seconds_each(0.01)?.compare(&[Rival::new("one", one), Rival::new("two", two)])?;
+/// let figure = figure::trade("trade_mine", "One point or two", &found)?;
+/// assert!(figure.svg().starts_with("<svg"));
+/// # Ok::<(), unbiased::Error>(())
+/// ```
 pub fn trade(name: &'static str, title: &str, comparison: &Comparison) -> Result<Figure> {
-    let rivals: Vec<&Measured> =
-        comparison.rivals.iter().filter(|rival| rival.nature != Nature::InfiniteVariance).take(4).collect();
-    let scale = if comparison.truth == 0.0 { 1.0 } else { comparison.truth.abs() };
-    let work =
-        |rival: &Measured| if rival.evaluations > 0.0 { rival.evaluations } else { rival.random_numbers };
+    let ranked: Vec<&Measured> = comparison.remarked().into_iter().map(|(rival, ..)| rival).collect();
+    let drawn: Vec<Drawn<'_>> = ranked.iter().copied().zip(STYLES).collect();
+    let lines: Vec<Drawn<'_>> = drawn
+        .iter()
+        .copied()
+        .filter(|(rival, _)| rival.nature != Nature::InfiniteVariance && rival.varies())
+        .collect();
+    let axis = if comparison.truth == 0.0 { "RMSE" } else { "RMSE/truth" };
+    let against = |heading: &str, unit: &str, cost: &dyn Fn(&Measured) -> f64| panel([heading, unit, axis], &lines, cost);
+    let mut time = against("Against time", "seconds on one core", &|rival| rival.seconds);
+    speed_up(&mut time, comparison);
+    let unit = match comparison.unit_of_work() {
+        "evaluations" => "evaluations or rays",
+        unit => unit,
+    };
     let panels = vec![
-        panel("Against draws", "draws", &rivals, scale, |_| 1.0),
-        panel("Against work", "evaluations or rays", &rivals, scale, work),
-        with_speed_up(
-            panel("Against time", "seconds on one core", &rivals, scale, |rival| rival.seconds),
-            &rivals,
-            scale,
-        ),
+        against("Against draws", "draws", &|_| 1.0),
+        against("Against work", unit, &|rival| comparison.work(rival)),
+        time,
+        efficiencies(&drawn, comparison),
     ];
-    let names: Vec<_> = rivals.iter().map(|rival| rival.name.as_str()).collect();
+    let listed = |rivals: &[&Measured]| rivals.iter().map(|rival| rival.name.as_str()).collect::<Vec<_>>().join(", ");
+    let names = listed(&drawn.iter().map(|(rival, _)| *rival).collect::<Vec<_>>());
+    let left_out = match ranked.get(STYLES.len()..) {
+        Some(rest) if !rest.is_empty() => {
+            format!(" Not drawn, as there are only sixteen kinds of lines: {}.", listed(rest))
+        }
+        _ => String::new(),
+    };
     Plot {
         name,
         title: title.into(),
         description: format!(
-            "Root mean square error relative to the truth against draws, counted work and seconds, all axes logarithmic, for {}. The lines follow from the variance, bias, work and time of a draw as they were measured (seed {}); an arrow spans the factor in time between \
-             the worst and the best at the same error.",
-            names.join(", "),
+            "Root mean square error{} against draws, counted work and seconds, all axes logarithmic, and the efficiency as a part of the best one's, for {names}.{left_out} The lines follow from the variance, \
+             bias, work and time of a draw as they were measured (seed {}); a line ends where a bias that is not seen may take over. An arrow spans the factor in time between the slowest and the fastest without bias \
+             at the same error, if the difference is more than three std errors. What has no variance, or an infinite one, has no line.",
+            if comparison.truth == 0.0 { "" } else { " relative to the truth" },
             comparison.seed
         ),
         edition: Edition::Solution,
         width: Width::Page,
-        height_mm: 70.0,
-        columns: 3,
+        height_mm: 126.0,
+        columns: 2,
         panels,
     }
     .draw()
 }
 
-/// The error against `cost`, over five powers of ten.
-fn panel(
-    heading: &str,
-    axis: &str,
-    rivals: &[&Measured],
-    scale: f64,
-    cost: impl Fn(&Measured) -> f64,
-) -> Panel {
-    let least = rivals.iter().map(|rival| cost(rival)).fold(f64::INFINITY, f64::min);
-    let low = 10f64.powf(least.log10().floor() + 1.0);
-    let high = low * 9e4;
-    let error = |rival: &Measured, c: f64| rival.rmse(rival.seconds * c / cost(rival)) / scale;
-    let visible = |error: f64| error.is_finite() && error > 0.0;
-    let ends =
-        rivals.iter().flat_map(|rival| [error(rival, low), error(rival, high)]).filter(|e| visible(*e));
-    let (bottom, top) =
-        ends.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), e| (low.min(e), high.max(e)));
-    // two powers of ten above the curves leave room for their names
-    let room = if heading == "Against draws" { 100.0 } else { 1.0 };
+/// The error after so much of `cost`, relative to the truth; NaN where a bias that is not seen may be as large.
+fn error(rival: &Measured, cost: &dyn Fn(&Measured) -> f64, spent: f64) -> f64 {
+    let error = rival.rmse(rival.seconds * spent / cost(rival));
+    let known = if rival.bias_seen() { 0.0 } else { rival.bias().abs() + 3.0 * rival.bias_error() };
+    if error > known && error.is_finite() { error / rival.scale() } else { f64::NAN }
+}
+
+/// The errors against `cost`, over five powers of ten.
+fn panel([heading, unit, axis]: [&str; 3], lines: &[Drawn<'_>], cost: &dyn Fn(&Measured) -> f64) -> Panel {
+    let least = lines.iter().map(|(rival, _)| cost(rival)).filter(|cost| *cost > 0.0).fold(f64::INFINITY, f64::min);
+    let low = if least.is_finite() { 10f64.powf(least.log10().floor() + 1.0) } else { 1.0 };
+    let high = low * SPAN;
+    let ends = lines.iter().flat_map(|(rival, _)| [low, high].map(|spent| error(rival, cost, spent)));
+    let (bottom, top) = ends
+        .filter(|error| *error > 0.0)
+        .fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), e| (low.min(e), high.max(e)));
     let (bottom, top) = if bottom < top {
-        (10f64.powf(bottom.log10().floor()), room * 10f64.powf(top.log10().ceil()))
+        (10f64.powf(bottom.log10().floor()), 10f64.powf(top.log10().ceil()))
     } else {
         (1e-3, 1.0)
     };
-    let mut panel = Panel::new(heading, Axis::log(axis, low, high), Axis::log("RMSE/truth", bottom, top));
-    for (index, (rival, (ink, _))) in rivals.iter().zip(STYLES).enumerate() {
-        panel.curve(&rival.name, ink, |c| if visible(error(rival, c)) { error(rival, c) } else { f64::NAN });
-        // names where the curves have fallen away, in the first panel alone
-        if heading == "Against draws" {
-            let row = 0.97 - 0.075 * index as f64;
-            panel.text(ink, [high, bottom * (top / bottom).powf(row)], Side::Left, &rival.name);
+    let mut panel = Panel::new(heading, Axis::log(unit, low, high), Axis::log(axis, bottom, top));
+    for (index, (rival, (ink, marker))) in lines.iter().enumerate() {
+        panel.curve(&rival.name, *ink, |spent| error(rival, cost, spent));
+        // a marker every power of ten, each rival's a little further, so that lines on top of each other show all of them
+        let first = 0.2 + 0.8 * (index as f64 + 0.5) / lines.len() as f64;
+        let marked = (0..5).map(|power| low * 10f64.powf(f64::from(power) + first));
+        let points: Vec<_> =
+            marked.map(|spent| [spent, error(rival, cost, spent)]).filter(|[_, error]| error.is_finite()).collect();
+        panel.marks(&rival.name, *ink, *marker, points);
+    }
+    panel
+}
+
+/// From the line of the slowest to that of the fastest, at an error that the fastest reaches early.
+fn speed_up(panel: &mut Panel, comparison: &Comparison) {
+    let ranking = comparison.ranking();
+    let mut lines = ranking.iter().filter(|place| place.rival.nature == Nature::Unbiased && place.rival.varies());
+    let Some(best) = lines.next() else { return };
+    // those that may have an infinite variance are no measure
+    let Some(worst) = lines.filter(|place| place.rank > best.rank && !place.rival.heavy_tail).last() else { return };
+    let factor = best.rival.efficiency() / worst.rival.efficiency();
+    let at = panel.x.low * (panel.x.high / panel.x.low).powf(0.1);
+    let error = error(best.rival, &|rival| rival.seconds, at);
+    if !(factor.is_finite() && (panel.y.low..panel.y.high).contains(&error)) {
+        return;
+    }
+    let end = at * factor;
+    let (from, text) = if end <= panel.x.high {
+        (end, format!("× {}", two_digits(factor)))
+    } else {
+        // what the arrow shows of it, in a round number below
+        let shown = 10f64.powf((panel.x.high / at).log10().floor());
+        (panel.x.high, format!("> × {}", two_digits(shown)))
+    };
+    panel.arrow(Ink::Black, [from, error], [at, error]);
+    panel.text(Ink::Black, [(at * from).sqrt(), error], Side::Above, &text);
+}
+
+/// Efficiency as a part of the best one's, a row a rival, each with its line and marker: what names the lines.
+fn efficiencies(drawn: &[Drawn<'_>], comparison: &Comparison) -> Panel {
+    let ranking = comparison.ranking();
+    let best = ranking.first().map_or(f64::NAN, |place| place.rival.efficiency());
+    let part = |rival: &Measured| {
+        let part = rival.efficiency() / best;
+        (part.is_finite() && part > 0.0).then_some(part)
+    };
+    let parts: Vec<f64> = drawn.iter().filter_map(|(rival, _)| part(rival)).collect();
+    let low = 10f64.powf(parts.iter().fold(0.1, |low: f64, part| low.min(*part)).log10().floor());
+    let most = 10f64.powf(parts.iter().fold(1.0, |most: f64, part| most.max(*part)).log10().ceil());
+    // room for a number to the right of the best
+    let high = most * (most / low).powf(0.3);
+    let row = |index: usize| (drawn.len() - index) as f64;
+    let ticks = drawn.iter().enumerate().map(|(index, (rival, _))| (row(index), shortened(&rival.name)));
+    let x = Axis::log("efficiency, as a part of the best one's", low, high);
+    let x = Axis { ticks: x.ticks.into_iter().filter(|(at, _)| *at <= most).collect(), ..x };
+    let y = Axis::linear("", 0.4, drawn.len() as f64 + 0.6).with_ticks(ticks);
+    let mut panel = Panel::new("Efficiency, and what the lines are", x, y);
+    for (index, (rival, (ink, marker))) in drawn.iter().enumerate() {
+        let y = row(index);
+        match part(rival) {
+            Some(part) => {
+                panel.line(&rival.name, *ink, [[low, y], [part, y]]);
+                panel.marks(&rival.name, *ink, *marker, [[part, y]]);
+                let biased = if rival.nature == Nature::Biased { ", biased" } else { "" };
+                panel.text(Ink::Black, [part, y], Side::Right, &format!("{}{biased}", two_digits(part)));
+            }
+            None => {
+                let why = match rival.nature {
+                    Nature::InfiniteVariance => "infinite variance",
+                    _ if !rival.varies() => "no variance",
+                    _ => "none",
+                };
+                panel.text(Ink::Black, [low, y], Side::Right, why);
+            }
         }
     }
     panel
 }
 
-fn with_speed_up(mut panel: Panel, rivals: &[&Measured], scale: f64) -> Panel {
-    let unbiased = || rivals.iter().filter(|rival| rival.nature == Nature::Unbiased && rival.varies());
-    let cost = |rival: &Measured| rival.variance() * rival.seconds;
-    let best = unbiased().min_by(|a, b| cost(a).total_cmp(&cost(b)));
-    let worst = unbiased().max_by(|a, b| cost(a).total_cmp(&cost(b)));
-    let (Some(best), Some(worst)) = (best, worst) else { return panel };
-    let factor = cost(worst) / cost(best);
-    if factor < 1.05 {
-        return panel;
+/// A name that fits beside the panel: its beginning and its end.
+fn shortened(name: &str) -> String {
+    let letters: Vec<char> = name.chars().collect();
+    match (letters.get(..LETTERS / 2), letters.get(letters.len().saturating_sub(LETTERS / 2 - 1)..)) {
+        (Some(start), Some(end)) if letters.len() > LETTERS => start.iter().chain(&['…']).chain(end).collect(),
+        _ => name.into(),
     }
-    // at the error that the best reaches near the left end
-    let at = panel.x.low * (panel.x.high / panel.x.low).powf(0.1);
-    let error = best.rmse(at) / scale;
-    panel.arrow(Ink::Black, [(at * factor).min(panel.x.high), error], [at, error]);
-    let middle = at * factor.min(panel.x.high / at).sqrt();
-    let places = if factor < 10.0 { 1 } else { 0 };
-    panel.text(Ink::Black, [middle, error], Side::Above, &format!("× {factor:.places$}"));
-    panel
 }
