@@ -203,7 +203,8 @@ impl Show for Comparison {
             let efficiency = place.map_or(String::new(), |place| two_digits(place.of_the_best));
             vec![rival.name.clone(), duration(rival.seconds), after, to(1e-3), to(1e-4), efficiency, remark]
         });
-        let [to_3, to_4] = if relative { ["to 0.1 %", "to 0.01 %"] } else { ["to 10⁻³ (absolute)", "to 10⁻⁴"] };
+        let [to_3, to_4] =
+            if relative { ["to 0.1 %", "to 0.01 %"] } else { ["to 10⁻³ (absolute)", "to 10⁻⁴"] };
         Table {
             caption: "What a second buys, on one core of the machine that ran this".into(),
             columns: vec!["estimator", "a draw", "error after 1 s", to_3, to_4, "efficiency", "remark"],

@@ -63,7 +63,9 @@ pub fn trade(name: &'static str, title: &str, comparison: &Comparison) -> Result
         .filter(|(rival, _)| rival.nature != Nature::InfiniteVariance && rival.varies())
         .collect();
     let axis = if comparison.truth == 0.0 { "RMSE" } else { "RMSE/truth" };
-    let against = |heading: &str, unit: &str, cost: &dyn Fn(&Measured) -> f64| panel([heading, unit, axis], &lines, cost);
+    let against = |heading: &str, unit: &str, cost: &dyn Fn(&Measured) -> f64| {
+        panel([heading, unit, axis], &lines, cost)
+    };
     let mut time = against("Against time", "seconds on one core", &|rival| rival.seconds);
     speed_up(&mut time, comparison);
     let unit = match comparison.unit_of_work() {
@@ -76,7 +78,8 @@ pub fn trade(name: &'static str, title: &str, comparison: &Comparison) -> Result
         time,
         efficiencies(&drawn, comparison),
     ];
-    let listed = |rivals: &[&Measured]| rivals.iter().map(|rival| rival.name.as_str()).collect::<Vec<_>>().join(", ");
+    let listed =
+        |rivals: &[&Measured]| rivals.iter().map(|rival| rival.name.as_str()).collect::<Vec<_>>().join(", ");
     let names = listed(&drawn.iter().map(|(rival, _)| *rival).collect::<Vec<_>>());
     let left_out = match ranked.get(STYLES.len()..) {
         Some(rest) if !rest.is_empty() => {
@@ -112,7 +115,8 @@ fn error(rival: &Measured, cost: &dyn Fn(&Measured) -> f64, spent: f64) -> f64 {
 
 /// The errors against `cost`, over five powers of ten.
 fn panel([heading, unit, axis]: [&str; 3], lines: &[Drawn<'_>], cost: &dyn Fn(&Measured) -> f64) -> Panel {
-    let least = lines.iter().map(|(rival, _)| cost(rival)).filter(|cost| *cost > 0.0).fold(f64::INFINITY, f64::min);
+    let least =
+        lines.iter().map(|(rival, _)| cost(rival)).filter(|cost| *cost > 0.0).fold(f64::INFINITY, f64::min);
     let low = if least.is_finite() { 10f64.powf(least.log10().floor() + 1.0) } else { 1.0 };
     let high = low * SPAN;
     let ends = lines.iter().flat_map(|(rival, _)| [low, high].map(|spent| error(rival, cost, spent)));
@@ -130,8 +134,10 @@ fn panel([heading, unit, axis]: [&str; 3], lines: &[Drawn<'_>], cost: &dyn Fn(&M
         // a marker every power of ten, each rival's a little further, so that lines on top of each other show all of them
         let first = 0.2 + 0.8 * (index as f64 + 0.5) / lines.len() as f64;
         let marked = (0..5).map(|power| low * 10f64.powf(f64::from(power) + first));
-        let points: Vec<_> =
-            marked.map(|spent| [spent, error(rival, cost, spent)]).filter(|[_, error]| error.is_finite()).collect();
+        let points: Vec<_> = marked
+            .map(|spent| [spent, error(rival, cost, spent)])
+            .filter(|[_, error]| error.is_finite())
+            .collect();
         panel.marks(&rival.name, *ink, *marker, points);
     }
     panel
@@ -140,10 +146,13 @@ fn panel([heading, unit, axis]: [&str; 3], lines: &[Drawn<'_>], cost: &dyn Fn(&M
 /// From the line of the slowest to that of the fastest, at an error that the fastest reaches early.
 fn speed_up(panel: &mut Panel, comparison: &Comparison) {
     let ranking = comparison.ranking();
-    let mut lines = ranking.iter().filter(|place| place.rival.nature == Nature::Unbiased && place.rival.varies());
-    let Some(best) = lines.next() else { return };
     // those that may have an infinite variance are no measure
-    let Some(worst) = lines.filter(|place| place.rank > best.rank && !place.rival.heavy_tail).last() else { return };
+    let mut lines = ranking.iter().filter(|place| {
+        let rival = place.rival;
+        rival.nature == Nature::Unbiased && rival.varies() && !rival.heavy_tail
+    });
+    let Some(best) = lines.next() else { return };
+    let Some(worst) = lines.filter(|place| place.rank > best.rank).last() else { return };
     let factor = best.rival.efficiency() / worst.rival.efficiency();
     let at = panel.x.low * (panel.x.high / panel.x.low).powf(0.1);
     let error = error(best.rival, &|rival| rival.seconds, at);
@@ -207,7 +216,9 @@ fn efficiencies(drawn: &[Drawn<'_>], comparison: &Comparison) -> Panel {
 fn shortened(name: &str) -> String {
     let letters: Vec<char> = name.chars().collect();
     match (letters.get(..LETTERS / 2), letters.get(letters.len().saturating_sub(LETTERS / 2 - 1)..)) {
-        (Some(start), Some(end)) if letters.len() > LETTERS => start.iter().chain(&['…']).chain(end).collect(),
+        (Some(start), Some(end)) if letters.len() > LETTERS => {
+            start.iter().chain(&['…']).chain(end).collect()
+        }
         _ => name.into(),
     }
 }

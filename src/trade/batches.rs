@@ -210,7 +210,10 @@ mod tests {
     fn alarms(tries: u64, n: u64, estimator: &dyn Estimator) -> u64 {
         let heavy = |block| {
             let batch = Batch::take(estimator, 11, block, n).unwrap();
-            is_heavy((batch.most - batch.estimate.mean()).max(batch.estimate.mean() - batch.least), &batch.estimate)
+            is_heavy(
+                (batch.most - batch.estimate.mean()).max(batch.estimate.mean() - batch.least),
+                &batch.estimate,
+            )
         };
         (0..tries).filter(|block| heavy(*block)).count() as u64
     }

@@ -54,7 +54,8 @@ impl Comparison {
         let mut order: Vec<&Measured> =
             self.rivals.iter().filter(|rival| rival.nature != Nature::Biased).collect();
         order.sort_by(|a, b| {
-            let by_time = || if a.varies() { std::cmp::Ordering::Equal } else { a.seconds.total_cmp(&b.seconds) };
+            let by_time =
+                || if a.varies() { std::cmp::Ordering::Equal } else { a.seconds.total_cmp(&b.seconds) };
             b.efficiency().total_cmp(&a.efficiency()).then_with(by_time)
         });
         let mut places: Vec<Place<'_>> = Vec::new();

@@ -198,9 +198,8 @@ impl Measured {
     pub fn seconds_to(&self, error: f64) -> Reach {
         let aim = error.abs() * self.scale();
         let [least, most] = self.bias_range();
-        let with_bias = |bias: f64| {
-            (self.variance() * self.seconds / ((aim - bias) * (aim + bias))).max(self.seconds)
-        };
+        let with_bias =
+            |bias: f64| (self.variance() * self.seconds / ((aim - bias) * (aim + bias))).max(self.seconds);
         if self.nature == Nature::InfiniteVariance || aim <= least || aim.is_nan() {
             Reach::Never
         } else if aim > most {

@@ -35,16 +35,11 @@ impl Comparison {
     pub fn rows(&self) -> Vec<Vec<String>> {
         let rows = self.remarked().into_iter().map(|(rival, place, remark)| {
             let sigma = two_digits(rival.variance().sqrt() / self.scale());
-            let (rank, efficiency) = place
-                .map_or_else(Default::default, |place| (place.rank.to_string(), two_digits(place.of_the_best)));
-            let mut row = vec![
-                rival.name.clone(),
-                sigma,
-                two_digits(self.work(rival)),
-                time(rival),
-                rank,
-                efficiency,
-            ];
+            let (rank, efficiency) = place.map_or_else(Default::default, |place| {
+                (place.rank.to_string(), two_digits(place.of_the_best))
+            });
+            let mut row =
+                vec![rival.name.clone(), sigma, two_digits(self.work(rival)), time(rival), rank, efficiency];
             row.extend(ERRORS.map(|error| rival.seconds_to(error).to_string()));
             row.push(remark);
             row
@@ -69,10 +64,13 @@ impl Comparison {
     /// The rivals without bias by rank, then the biased ones, each with what is to be said of it.
     pub(crate) fn remarked(&self) -> Vec<(&Measured, Option<Place<'_>>, String)> {
         let ranked = self.ranking().into_iter().map(|place| (place.rival, Some(place)));
-        let biased = self.rivals.iter().filter(|rival| rival.nature == Nature::Biased).map(|rival| (rival, None));
+        let biased =
+            self.rivals.iter().filter(|rival| rival.nature == Nature::Biased).map(|rival| (rival, None));
         let all = ranked.chain(biased);
-        all.map(|(rival, place)| (rival, place, self.remark(rival, place.is_none_or(|place| place.set_apart))))
-            .collect()
+        all.map(|(rival, place)| {
+            (rival, place, self.remark(rival, place.is_none_or(|place| place.set_apart)))
+        })
+        .collect()
     }
 
     fn remark(&self, rival: &Measured, set_apart: bool) -> String {
