@@ -5,7 +5,7 @@ use super::{Edition, Figure};
 use crate::error::Result;
 use crate::trade::{Comparison, Measured, Nature, two_digits};
 
-/// An ink, which has a dash of its own, and a marker a rival: the first eight differ in two of three in colour, and in dash or marker in grey.
+/// An ink, which has a dash of its own, and a marker a rival: no two are alike in grey.
 const STYLES: [(Ink, Marker); 16] = [
     (Ink::Blue, Marker::Disc),
     (Ink::Vermilion, Marker::Square),
@@ -26,7 +26,7 @@ const STYLES: [(Ink, Marker); 16] = [
 ];
 
 /// Letters of a name that fit beside a panel.
-const LETTERS: usize = 30;
+const LETTERS: usize = 20;
 
 /// Powers of ten that the axes of draws, work and time span, to the right of their beginning.
 const SPAN: f64 = 9e4;
@@ -174,30 +174,42 @@ fn speed_up(panel: &mut Panel, comparison: &Comparison) {
 /// Efficiency as a part of the best one's, a row a rival, each with its line and marker: what names the lines.
 fn efficiencies(drawn: &[Drawn<'_>], comparison: &Comparison) -> Panel {
     let ranking = comparison.ranking();
-    let best = ranking.first().map_or(f64::NAN, |place| place.rival.efficiency());
+    let best =
+        ranking.iter().find(|place| place.rival.varies()).map_or(f64::NAN, |place| place.rival.efficiency());
     let part = |rival: &Measured| {
         let part = rival.efficiency() / best;
         (part.is_finite() && part > 0.0).then_some(part)
     };
     let parts: Vec<f64> = drawn.iter().filter_map(|(rival, _)| part(rival)).collect();
-    let low = 10f64.powf(parts.iter().fold(0.1, |low: f64, part| low.min(*part)).log10().floor());
-    let most = 10f64.powf(parts.iter().fold(1.0, |most: f64, part| most.max(*part)).log10().ceil());
-    // room for a number to the right of the best
-    let high = most * (most / low).powf(0.3);
+    let most = parts.iter().fold(1.0, |most: f64, part| most.max(*part));
+    let least = parts.iter().fold(0.3 * most, |least: f64, part| least.min(*part));
+    // even the shortest line shows its dash
+    let low = most * (least / most).powf(1.5);
+    // the names take so many points of 233, and what stands beside the longest line 66
+    let widest =
+        drawn.iter().map(|(rival, _)| shortened(&rival.name).chars().count()).max().unwrap_or(0) as f64;
+    let width = 213.0 - 5.4 * widest.min(8.0) - 4.4 * (widest - 8.0).max(0.0);
+    let high = low * (most / low).powf(width / (width - 66.0));
     let row = |index: usize| (drawn.len() - index) as f64;
     let ticks = drawn.iter().enumerate().map(|(index, (rival, _))| (row(index), shortened(&rival.name)));
-    let x = Axis::log("efficiency, as a part of the best one's", low, high);
-    let x = Axis { ticks: x.ticks.into_iter().filter(|(at, _)| *at <= most).collect(), ..x };
+    let x = Axis::log("efficiency/best", low, high);
+    // three at most, where the lines are
+    let all: Vec<_> = x.ticks.iter().filter(|(at, _)| *at <= most).cloned().collect();
+    let x = x.with_ticks(all.iter().rev().step_by(all.len().div_ceil(3).max(1)).cloned());
     let y = Axis::linear("", 0.4, drawn.len() as f64 + 0.6).with_ticks(ticks);
-    let mut panel = Panel::new("Efficiency, and what the lines are", x, y);
+    let mut panel = Panel::new("Efficiency", x, y);
     for (index, (rival, (ink, marker))) in drawn.iter().enumerate() {
         let y = row(index);
         match part(rival) {
             Some(part) => {
                 panel.line(&rival.name, *ink, [[low, y], [part, y]]);
                 panel.marks(&rival.name, *ink, *marker, [[part, y]]);
-                let biased = if rival.nature == Nature::Biased { ", biased" } else { "" };
-                panel.text(Ink::Black, [part, y], Side::Right, &format!("{}{biased}", two_digits(part)));
+                let mind = match rival.nature {
+                    Nature::Biased => ", biased",
+                    _ if rival.heavy_tail => ", heavy tail",
+                    _ => "",
+                };
+                panel.text(Ink::Black, [part, y], Side::Right, &format!("{}{mind}", two_digits(part)));
             }
             None => {
                 let why = match rival.nature {

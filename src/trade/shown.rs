@@ -34,7 +34,8 @@ impl Comparison {
     /// The table's cells, a row each: the rivals without bias by rank, then the biased ones.
     pub fn rows(&self) -> Vec<Vec<String>> {
         let rows = self.remarked().into_iter().map(|(rival, place, remark)| {
-            let sigma = two_digits(rival.variance().sqrt() / self.scale());
+            let sigma =
+                if rival.varies() { two_digits(rival.variance().sqrt() / self.scale()) } else { "0".into() };
             let (rank, efficiency) = place.map_or_else(Default::default, |place| {
                 (place.rank.to_string(), two_digits(place.of_the_best))
             });
@@ -372,14 +373,14 @@ pub(crate) fn two_digits(x: f64) -> String {
     if x.is_infinite() {
         return "∞".into();
     }
-    let size = x.abs();
+    // 9.99 is shown as 10, which has one digit more
+    let size: f64 = format!("{x:.1e}").parse().map_or(x, f64::abs);
     if x != 0.0 && !(1e-4..1e5).contains(&size) {
         return format!("{x:.1e}");
     }
-    let places = (1.0 - size.log10().floor()).clamp(0.0, 9.0);
     // 0 has no first digit
-    let places = if x == 0.0 { 0 } else { places as usize };
-    format!("{x:.places$}")
+    let places = if x == 0.0 { 0.0 } else { (1.0 - size.log10().floor()).clamp(0.0, 9.0) };
+    format!("{x:.*}", places as usize)
 }
 
 /// Decimal places that show two digits of an error.
