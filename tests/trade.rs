@@ -317,14 +317,78 @@ fn slopes_are_those_of_a_series() {
     assert_relative_eq!(slopes[2].unwrap(), -1.5, epsilon = 0.0, max_relative = 1e-12);
     assert!([0, 3, 4, 5, 6].iter().all(|index| slopes[*index].is_none()), "{slopes:?}");
 
-    // 16 × the points: the errors of jittered ones on a smooth integrand fall by 16 and more; 7 std errors of either variance are below 1 in the slope from 40 batches' worth of draws on
+    // z ≤ 7. In a cell of width h = 1/s about (x, y) the variance of XY is (x² + y²) v + v² with v = h²/12; summed over the cells, (2v(s²/3 − 1/12) + s² v²)/s⁴
+    let exact = |s: f64| {
+        let v = 1.0 / (12.0 * s * s);
+        (2.0 * v * (s * s / 3.0 - 1.0 / 12.0) + s * s * v * v) / s.powi(4)
+    };
     let square = Rectangle::new([0.0, 1.0], [0.0, 1.0]).unwrap();
     let rivals =
         [2, 8].map(|side| Rival::new("", square.jittered(|x, y| x * y, side).unwrap()).series("jittered"));
     let found = compare(&rivals, 0.25);
     assert_eq!(found.rivals.iter().map(|rival| rival.evaluations).collect::<Vec<_>>(), [4.0, 64.0]);
     let slope = found.slope(&found.rivals[1]).unwrap();
-    assert!((slope + 1.0).abs() <= 0.15, "{slope}");
+    let expected = 0.5 * (exact(8.0) / exact(2.0)).ln() / 16f64.ln();
+    let [a, b] = [0, 1].map(|index| found.rivals[index].variance_error / found.rivals[index].variance());
+    assert!((slope - expected).abs() <= 7.0 * 0.5 * a.hypot(b) / 16f64.ln(), "{slope}, not {expected}");
+}
+
+#[test]
+fn every_number_stands_in_its_own_column() {
+    let rival = Measured {
+        truth_error: 0.001,
+        evaluations: 3.0,
+        random_numbers: 7.0,
+        seconds_range: [0.9e-6, 1.2e-6],
+        series: Some("cut".into()),
+        ..named("biased", measured(Nature::Biased, 2.5, 0.25, 1e-6))
+    };
+    let best = Measured {
+        seconds_range: [0.9e-6, 1.2e-6],
+        ..named("best", measured(Nature::Unbiased, 2.0, 4.0, 1e-6))
+    };
+    let found = comparison([best.clone(), rival.clone()]);
+    let record = serde_json::to_value(&found).unwrap()["rivals"][1].clone();
+    let Some(Crossing::At { seconds, rmse }) = found.crossing(&rival) else { panic!("no crossing") };
+    for (name, expected) in [
+        ("draws", DRAWS as f64),
+        ("mean", 2.5),
+        ("std_error", 0.005),
+        ("truth", 2.0),
+        ("truth_error", 0.001),
+        ("bias", 0.5),
+        ("bias_error", 0.005f64.hypot(0.001)),
+        ("variance", 0.25),
+        ("variance_error", 0.0025),
+        ("evaluations", 3.0),
+        ("random_numbers", 7.0),
+        ("seconds", 1e-6),
+        ("seconds_low", 0.9e-6),
+        ("seconds_high", 1.2e-6),
+        ("efficiency", 4e6),
+        ("crossing_seconds", seconds),
+        ("crossing_error", rmse),
+    ] {
+        let value = record[name].as_f64().unwrap_or_else(|| panic!("{name}: {}", record[name]));
+        assert_relative_eq!(value, expected, epsilon = 0.0, max_relative = 1e-12);
+    }
+    for (name, expected) in [("name", "biased"), ("series", "cut"), ("nature", "biased"), ("crossing", "at")]
+    {
+        assert_eq!(record[name], expected);
+    }
+    assert_eq!((&record["bias_seen"], &record["heavy_tail"]), (&true.into(), &false.into()));
+    let of_best = serde_json::to_value(&found).unwrap()["rivals"][0].clone();
+    assert_eq!((&of_best["rank"], &of_best["set_apart"]), (&1.into(), &true.into()));
+    for (name, error) in [
+        ("seconds_to_1e-2", 1e-2),
+        ("seconds_to_1e-3", 1e-3),
+        ("seconds_to_1e-4", 1e-4),
+        ("seconds_to_1e-5", 1e-5),
+    ] {
+        // σ² t = 4e-6, and a truth of 2
+        let value = of_best[name].as_f64().unwrap();
+        assert_relative_eq!(value, 1e-6 / (error * error), epsilon = 0.0, max_relative = 1e-12);
+    }
 }
 
 /// Relative errors of 0 mean nothing: they are absolute.

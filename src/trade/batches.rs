@@ -206,6 +206,37 @@ mod tests {
         assert_eq!(draws_that_take(1e-3, |_| Ok(0.0)).unwrap(), MOST);
     }
 
+    /// The ninth of seventeen times is their median, the fifth and the thirteenth their quartiles.
+    #[test]
+    fn times_are_medians_and_quartiles() {
+        let of = |k: u64| {
+            let estimate = Estimate::from_draws(&[k as f64, 2.0 * k as f64]);
+            let cost = Cost { random_numbers: 2, evaluations: 6 };
+            Batch {
+                estimate,
+                least: k as f64,
+                most: 2.0 * k as f64,
+                cost,
+                elapsed: Duration::from_micros(2 * k),
+            }
+        };
+        // in some order
+        let batches = Batches { draws: 2, taken: (0..COUNT).map(|k| of(1 + 5 * k % COUNT)).collect() };
+        let trade = Trade::new(1, 1.0).unwrap();
+        let found = batches.measured(&Rival::new("", from_fn(|_| 0.0)), &trade);
+        let micros = |seconds: f64| (1e6 * seconds).round();
+        assert_eq!(
+            [found.seconds_range[0], found.seconds, found.seconds_range[1]].map(micros),
+            [5.0, 9.0, 13.0]
+        );
+        assert_eq!((found.evaluations, found.random_numbers, found.estimate.draws()), (3.0, 1.0, 34));
+        // k²/2 is a batch's variance: its std error over the batches, by Σ k⁴ and Σ k²
+        let (fourths, squares) =
+            (1..=17).map(f64::from).fold((0.0, 0.0), |(a, b), k| (a + k.powi(4), b + k * k));
+        let variance: f64 = 0.25 * (fourths - squares * squares / 17.0) / 16.0;
+        assert!((found.variance_error - (variance / 17.0).sqrt()).abs() <= 1e-12);
+    }
+
     /// How many of `tries` sets of n draws are called heavy.
     fn alarms(tries: u64, n: u64, estimator: &dyn Estimator) -> u64 {
         let heavy = |block| {
