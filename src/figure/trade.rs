@@ -152,7 +152,7 @@ fn speed_up(panel: &mut Panel, comparison: &Comparison) {
         rival.nature == Nature::Unbiased && rival.varies() && !rival.heavy_tail
     });
     let Some(best) = lines.next() else { return };
-    let Some(worst) = lines.filter(|place| place.rank > best.rank).last() else { return };
+    let Some(worst) = lines.rfind(|place| place.rank > best.rank) else { return };
     let factor = best.rival.efficiency() / worst.rival.efficiency();
     let at = panel.x.low * (panel.x.high / panel.x.low).powf(0.1);
     let error = error(best.rival, &|rival| rival.seconds, at);
