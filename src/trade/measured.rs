@@ -95,7 +95,7 @@ pub struct Measured {
     pub evaluations: f64,
     /// Random numbers that a draw takes.
     pub random_numbers: f64,
-    /// Seconds that a draw takes: the median of 17 batches.
+    /// Seconds that a draw takes: the median of 17 batches, each of which is the median of up to 256 pieces.
     pub seconds: f64,
     /// The quartiles of that.
     pub seconds_range: [f64; 2],
