@@ -35,7 +35,7 @@ const SPAN: f64 = 9e4;
 type Drawn<'a> = (&'a Measured, (Ink, Marker));
 
 /// The root mean square errors √(β² + σ² t/T) of the rivals against draws, against counted work and against seconds, and their efficiencies 1/(σ² t), which name the lines. An arrow in the panel of
-/// seconds spans the factor between the slowest and the fastest at the same error, where that difference is real.
+/// seconds spans the factor between the slowest and the fastest at the same error, where that difference is real and at least 2.
 ///
 /// Work is evaluations where every rival counts them, else random numbers. What has no line, such as an infinite variance, is named all the same; where a bias is not seen, the line
 /// ends at the error down to which it is known. Sixteen rivals can be drawn: the description names those left out. `name` is the file's, `title` says what is compared.
@@ -93,7 +93,7 @@ pub fn trade(name: &'static str, title: &str, comparison: &Comparison) -> Result
         description: format!(
             "Root mean square error{} against draws, counted work and seconds, all axes logarithmic, and the efficiency as a part of the best one's, for {names}.{left_out} The lines follow from the variance, \
              bias, work and time of a draw as they were measured (seed {}); a line ends where a bias that is not seen may take over. An arrow spans the factor in time between the slowest and the fastest without bias \
-             at the same error, if the difference is more than three std errors. What has no variance, or an infinite one, has no line.",
+             at the same error, if the difference is more than three std errors, and at least a factor of 2. What has no variance, or an infinite one, has no line.",
             if comparison.truth == 0.0 { "" } else { " relative to the truth" },
             comparison.seed
         ),
@@ -156,7 +156,8 @@ fn speed_up(panel: &mut Panel, comparison: &Comparison) {
     let factor = best.rival.efficiency() / worst.rival.efficiency();
     let at = panel.x.low * (panel.x.high / panel.x.low).powf(0.1);
     let error = error(best.rival, &|rival| rival.seconds, at);
-    if !(factor.is_finite() && (panel.y.low..panel.y.high).contains(&error)) {
+    // a shorter arrow would be all head
+    if !(factor.is_finite() && factor >= 2.0 && (panel.y.low..panel.y.high).contains(&error)) {
         return;
     }
     let end = at * factor;
