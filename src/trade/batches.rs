@@ -34,7 +34,6 @@ const LOOKS: u64 = 256;
 
 impl Batch {
     /// The time of a draw is the median of up to 256 pieces of the batch, each so short that hardly one is interrupted by what else the machine does.
-
     fn take(estimator: &dyn Estimator, seed: u64, block: u64, draws: u64) -> Result<Self> {
         let (mut estimate, mut least, mut most) = (Estimate::new(), f64::INFINITY, f64::NEG_INFINITY);
         let piece = draws.div_ceil(SLICE as u64).div_ceil(LOOKS) * SLICE as u64;
