@@ -250,6 +250,16 @@ fn the_spread_of_the_times_decides_what_is_real() {
     }
 }
 
+#[test]
+fn the_truths_error_reaches_every_rival() {
+    let trade = Trade::new(1, 0.5).unwrap().known_to(0.25).unwrap().seconds_each(1e-9).unwrap();
+    let uniform = || from_fn(|rng| rng.uniform());
+    let rivals = [Rival::new("a", uniform()), Rival::new("b", uniform()).nature(Nature::Biased)];
+    let found = trade.compare(&rivals).unwrap();
+    assert_eq!((found.truth_error, found.rivals[1].truth_error), (0.25, 0.25));
+    assert!(found.rivals[1].bias_error() > 0.25 && found.rivals[0].bias_error() == 0.0);
+}
+
 /// Of a chain in which no one is told apart from its neighbour the ends are.
 #[test]
 fn ranks_see_through_chains() {
