@@ -56,7 +56,7 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
         if k > 0 {
             let paths = once_less(FindLight::BySampling)?;
             let estimated = reflected(room, Uniform, |p_j, rng| paths.light_from(p_j, rng));
-            let whole = Paths::new(room, Bounces::Exactly(k), Uniform, FindLight::BySampling)?;
+            let whole = Paths::new(room, Bounces::Exactly(k), Cosine, FindLight::BySampling)?;
             add("K-bounce part, L_o(p_j) estimated", &estimated, truth, whole.caution())?;
         }
         for (what, directions, light) in [
