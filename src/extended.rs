@@ -179,6 +179,10 @@ mod tests {
         for x in [2.0, 3.0, 1e-301, 7e300, tiny] {
             assert!(((w(x).sqrt().squared() - w(x)) / w(x)).round().abs() <= 2f64.powi(-102), "{x}");
         }
+        // numbers with more digits than f64 has, of an even and an odd exponent
+        for x in [w(1.0) / w(3.0), w(2.0) / w(3.0)] {
+            assert!(((x.sqrt().squared() - x) / x).round().abs() <= 2f64.powi(-102));
+        }
         // on the way beyond f64 and back, at every end
         for x in [f64::MAX, -f64::MAX, f64::MIN_POSITIVE, tiny, -3.0 * tiny, 0.1] {
             assert_eq!(w(x).round().to_bits(), x.to_bits());

@@ -665,3 +665,23 @@ proptest! {
         }
     }
 }
+
+/// A direction along the surface carries no light to it, not even where the light grows beyond all bounds there.
+#[test]
+fn along_the_surface_nothing_arrives() {
+    struct Along;
+    impl Distribution<Direction> for Along {
+        fn sample<R: Rng + ?Sized>(&self, _: &mut R) -> Direction {
+            Direction::polar(0.0, 0.3).unwrap()
+        }
+    }
+    impl Density for Along {
+        type Point = Direction;
+        fn pdf(&self, _: &Direction) -> f64 {
+            1.0
+        }
+    }
+    let surface = Lambertian::new(0.61).unwrap();
+    let estimator = surface.estimator(|direction| direction.cos_theta().powf(-0.5), Along);
+    assert_eq!(estimator.draw(&mut Stream::new(1, 0)), 0.0);
+}

@@ -1000,3 +1000,10 @@ fn filling_with_bounces_is_drawing_them() {
         assert!(filled.iter().all(|draw| draw.to_bits() == bounces.draw(&mut one).to_bits()));
     }
 }
+
+#[test]
+fn paths_say_their_q() {
+    for q in [0.8, 0.2, 1e-300] {
+        assert_eq!(LightModel::new(0.5, 0.25).unwrap().roulette(q).unwrap().q(), q);
+    }
+}
