@@ -772,7 +772,7 @@ fn what_is_emitted_is_absorbed() {
         });
         let what = format!("{bounces:?} {way:?}");
         let pilot = plain(&absorbed, 100_000, 520 + i as u64).std_error;
-        let draws = 1e5 * (11.6 * pilot / (1e-3 * truth)).powi(2);
+        let draws = 1e5 * (12.5 * pilot / (1e-3 * truth)).powi(2);
         plain(&absorbed, draws as u64, 524 + i as u64).assert(
             truth,
             0.0,
