@@ -10,6 +10,7 @@
 
 mod common;
 
+use common::furnace;
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use glam::DVec3;
@@ -420,16 +421,6 @@ fn a_block_is_the_same_work_however_long_the_paths() {
 // ---- the furnace ---------------------------------------------------------------------------------------------------
 
 const ALBEDOS: [f64; 4] = [0.2, 0.5, 0.8, 0.99];
-
-fn furnace(albedo: f64) -> Scene {
-    Scene {
-        wall_albedo: albedo,
-        cube_albedo: albedo,
-        light_half_width: 0.0,
-        emission: 1.0,
-        ..Scene::default()
-    }
-}
 
 fn close(given: f64, exact: f64) -> bool {
     (given - exact).abs() <= 64.0 * f64::EPSILON * exact

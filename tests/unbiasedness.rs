@@ -18,6 +18,7 @@
 
 mod common;
 
+use common::furnace;
 use std::f64::consts::PI;
 use std::fmt::Debug;
 
@@ -777,16 +778,6 @@ impl Estimator for CutOff {
 /// The worksheet's, and others.
 fn albedos_of_furnaces() -> impl Strategy<Value = f64> + Clone {
     prop_oneof![prop::sample::select(vec![0.2, 0.5, 0.8, 0.99]), 0.05..0.95]
-}
-
-fn furnace(albedo: f64) -> Scene {
-    Scene {
-        wall_albedo: albedo,
-        cube_albedo: albedo,
-        light_half_width: 0.0,
-        emission: 1.0,
-        ..Scene::default()
-    }
 }
 
 /// All light by roulette: X ≤ Σ (wρ/q)ʲ = q/(q − wρ) for q > wρ, w = 1 with cosine directions and 2 with uniform ones, which are taken where that leaves room for q.

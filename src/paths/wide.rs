@@ -201,7 +201,7 @@ struct Room<T> {
     radiance: T,
     emission: T,
     half_width: T,
-    /// L_e A/π: [`Paths::power`]
+    /// L_e A/π
     power: T,
 }
 

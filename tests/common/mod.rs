@@ -1,4 +1,4 @@
-//! What all tests share: seeds and proptest's settings.
+//! What all tests share: seeds, proptest's settings, a furnace and a generator that is stuck.
 #![allow(dead_code)] // each test takes what it needs
 
 /// Fixed by default; `UNBIASED_SEED=n` gives the whole suite fresh ones.
@@ -23,6 +23,17 @@ pub fn config(cases: u32) -> proptest::test_runner::Config {
         cases: if mutation() { cases.min(cases.div_ceil(10).max(100)) } else { cases },
         rng_seed: proptest::test_runner::RngSeed::Fixed(seed(1)),
         failure_persistence: None,
+        ..Default::default()
+    }
+}
+
+/// A room without a light in which every face emits 1 and reflects so much.
+pub fn furnace(albedo: f64) -> unbiased::box_room::Scene {
+    unbiased::box_room::Scene {
+        wall_albedo: albedo,
+        cube_albedo: albedo,
+        light_half_width: 0.0,
+        emission: 1.0,
         ..Default::default()
     }
 }
