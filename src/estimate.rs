@@ -25,6 +25,12 @@ const STEP: i32 = 600;
 const UP: f64 = f64::from_bits((1023 + STEP as u64) << 52);
 const DOWN: f64 = f64::from_bits((1023 - STEP as u64) << 52);
 
+/// Whether a square can be summed as it is. Its bits are in its order, and one comparison is sooner made than two.
+#[inline(always)]
+fn is_plain(square: f64) -> bool {
+    square.to_bits().wrapping_sub(DOWN.to_bits()) < UP.to_bits() - DOWN.to_bits()
+}
+
 /// 2⁹⁰⁰: up to 2⁶⁴ draws below it have a sum inside `f64`.
 const HUGE: f64 = f64::from_bits((1023 + 900) << 52);
 
@@ -43,8 +49,19 @@ const HUGE: f64 = f64::from_bits((1023 + 900) << 52);
 /// ```
 ///
 /// A draw that is NaN or infinite makes the mean NaN or infinite; [`crate::estimate()`] ends with an error instead.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+///
+/// As JSON it is its sums to the last bit; an infinity or NaN among them is a string.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[serde(from = "Moments", into = "Moments")]
 pub struct Estimate {
+    moments: Moments,
+    /// Where draws come one at a time, what their squares are taken about: the mean of at least the first half of them.
+    /// So at most half of the sum of squares is not variance, and a draw needs no division.
+    pivot: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+struct Moments {
     draws: u64,
     /// Σ Xᵢ / 2^sum_exponent
     sum: Twofold,
@@ -52,6 +69,24 @@ pub struct Estimate {
     /// Σ (Xᵢ − X̄)² / 4^exponent
     squares: Twofold,
     exponent: i32,
+}
+
+impl From<Moments> for Estimate {
+    fn from(moments: Moments) -> Self {
+        Self { moments, pivot: None }
+    }
+}
+
+impl From<Estimate> for Moments {
+    fn from(estimate: Estimate) -> Self {
+        estimate.settled()
+    }
+}
+
+impl PartialEq for Estimate {
+    fn eq(&self, other: &Self) -> bool {
+        self.settled() == other.settled()
+    }
 }
 
 impl Default for Estimate {
@@ -63,7 +98,7 @@ impl Default for Estimate {
 impl Estimate {
     /// No draws yet; the mean of none is NaN.
     pub const fn new() -> Self {
-        Self { draws: 0, sum: Twofold::ZERO, sum_exponent: 0, squares: Twofold::ZERO, exponent: -STEP }
+        Self { moments: Moments::NONE, pivot: None }
     }
 
     /// The estimate that these draws give.
@@ -74,73 +109,65 @@ impl Estimate {
     }
 
     /// Takes in one draw.
+    #[inline]
     pub fn push(&mut self, draw: f64) {
-        self.merge(&Self::of_equal(draw, 1));
+        if let Some(pivot) = self.pivot {
+            let off = draw - pivot;
+            let square = off * off;
+            if is_plain(square) || off == 0.0 {
+                let moments = &mut self.moments;
+                moments.draws += 1;
+                moments.sum = moments.sum.loosely_plus(draw, two_sum);
+                moments.squares = moments.squares.loosely_plus(square, fast_two_sum);
+                if !moments.draws.is_power_of_two() {
+                    return;
+                }
+            } else {
+                self.join(draw);
+            }
+        } else {
+            self.join(draw);
+        }
+        self.move_pivot();
     }
 
     /// Takes in many draws, faster than one at a time and equally exact.
     pub fn extend_from_slice(&mut self, draws: &[f64]) {
         for slice in draws.chunks(SLICE) {
-            self.merge(&Self::of_slice(slice));
+            *self = self.settled().merged(&Moments::of_slice(slice)).into();
         }
     }
 
     /// Takes in all that another estimate of the same quantity has seen.
     ///
-    /// With δ = mean_b − mean_a: Σ² = Σ²_a + Σ²_b + δ² n_a n_b / n.
+    /// With δ = mean_b − mean_a: Σ² = Σ²_a + Σ²_b + δ² n_a n_b / n. Beyond 2⁶⁴ draws their number stays at the largest `u64`.
     pub fn merge(&mut self, other: &Self) {
-        if self.draws == 0 || other.draws == 0 {
-            *self = if self.draws == 0 { *other } else { *self };
-            return;
-        }
-        let (n_a, n_b) = (self.draws as f64, other.draws as f64);
-        let sum_exponent = self.sum_exponent.max(other.sum_exponent);
-        let [a, b] = [*self, *other]
-            .map(|side| if side.sum_exponent == sum_exponent { side.sum } else { side.sum.times(DOWN) });
-        let delta = b.over(n_b).join(a.over(n_a).times(-1.0));
-        let (step, scaled) = match exponent_of(delta.hi) {
-            step if sum_exponent == 0 => {
-                (step, Twofold { hi: scale(delta.hi, step), lo: scale(delta.lo, step) })
-            }
-            _ => (STEP, delta),
-        };
-        let exponent = self.exponent.max(other.exponent).max(step);
-        let moved = scaled.squared().by(n_a).by(n_b).over(n_a + n_b);
-        *self = Self {
-            draws: self.draws + other.draws,
-            sum: a.join(b),
-            sum_exponent,
-            squares: lower(self.squares, self.exponent, exponent)
-                .join(lower(other.squares, other.exponent, exponent))
-                .join(lower(moved, step, exponent)),
-            exponent,
-        };
+        *self = self.settled().merged(&other.settled()).into();
     }
 
     /// How many draws were taken in.
     pub fn draws(&self) -> u64 {
-        self.draws
+        self.moments.draws
     }
 
     /// The mean X̄ = 1/n Σ Xᵢ; NaN if there are no draws.
     pub fn mean(&self) -> f64 {
-        if self.draws == 0 {
-            f64::NAN
-        } else {
-            unscale(self.sum.over(self.draws as f64).hi, self.sum_exponent)
-        }
+        let Moments { draws, sum, sum_exponent, .. } = self.moments;
+        if draws == 0 { f64::NAN } else { unscale(sum.over(draws as f64).hi, sum_exponent) }
     }
 
     /// The unbiased variance of one draw, s² = 1/(n−1) Σ (Xᵢ − X̄)²; `None` for fewer than two draws.
     pub fn variance(&self) -> Option<f64> {
-        let mean_square = (self.squares.hi + self.squares.lo) / self.degrees_of_freedom()?;
-        Some(unscale(unscale(mean_square, self.exponent), self.exponent))
+        let Moments { squares, exponent, .. } = self.settled();
+        let mean_square = (squares.hi + squares.lo) / self.degrees_of_freedom()?;
+        Some(unscale(unscale(mean_square, exponent), exponent))
     }
 
     /// The standard error of the mean, s/√n; `None` for fewer than two draws.
     pub fn std_error(&self) -> Option<f64> {
-        let mean_square = (self.squares.hi + self.squares.lo) / self.degrees_of_freedom()?;
-        Some(unscale((mean_square / self.draws as f64).sqrt(), self.exponent))
+        let Moments { squares, exponent, draws, .. } = self.settled();
+        let mean_square = (squares.hi + squares.lo) / self.degrees_of_freedom()?;
+        Some(unscale((mean_square / draws as f64).sqrt(), exponent))
     }
 
     /// The interval mean ± t·s/√n that covers the truth with probability `level`, t being Student's with
@@ -162,32 +189,110 @@ impl Estimate {
             return Err(Error::TooFewDraws {
                 statistic: "a confidence interval",
                 needed: 2,
-                draws: self.draws,
+                draws: self.draws(),
             });
         };
         let reach = student_t(freedom, 0.5 * (1.0 - level)) * std_error;
         Ok([self.mean() - reach, self.mean() + reach])
     }
 
-    /// How many standard errors the mean lies from `truth`; `None` for fewer than two draws.
+    /// How many standard errors the mean lies from `truth`, ±∞ for an infinite one; `None` for fewer than two draws, and where
+    /// there is no distance: a truth that is NaN, or draws that were not finite.
     ///
     /// A difference of at most 8 units in the last place of `truth` is rounding and counts as none, so that an
-    /// estimator without variance has z = 0 where it is right.
+    /// estimator without variance has z = 0 where it is right. A truth of 0 has no last place: what its draws owe to
+    /// rounding, an estimator of 0 has to drop itself.
     pub fn z(&self, truth: f64) -> Option<f64> {
         let std_error = self.std_error()?;
         let off = self.mean() - truth;
-        Some(if off.abs() <= 8.0 * f64::EPSILON * truth.abs() { 0.0 } else { off / std_error })
+        let rounding = truth.is_finite() && off.abs() <= 8.0 * f64::EPSILON * truth.abs();
+        let z = if rounding { 0.0 } else { off / std_error };
+        (!z.is_nan()).then_some(z)
     }
 
     fn degrees_of_freedom(&self) -> Option<f64> {
-        (self.draws >= 2).then(|| (self.draws - 1) as f64)
+        (self.draws() >= 2).then(|| (self.draws() - 1) as f64)
+    }
+
+    /// Takes in one draw of any size.
+    #[cold]
+    #[inline(never)]
+    fn join(&mut self, draw: f64) {
+        *self = self.settled().merged(&Moments::of_equal(draw, 1)).into();
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn move_pivot(&mut self) {
+        *self = self.settled().about_mean();
+    }
+
+    /// With the squares about the mean, wherever they are summed.
+    fn settled(&self) -> Moments {
+        let moments = self.moments;
+        let Some(pivot) = self.pivot else { return moments };
+        let n = moments.draws as f64;
+        let off = moments.sum.over(n).plus(-pivot);
+        let squares = moments.squares.join(off.squared().by(-n));
+        if squares.hi > 0.0 {
+            Moments { squares, ..moments }
+        } else {
+            // without variance there is no scale yet
+            Moments { squares: Twofold::ZERO, exponent: -STEP, ..moments }
+        }
+    }
+}
+
+impl Moments {
+    const NONE: Self =
+        Self { draws: 0, sum: Twofold::ZERO, sum_exponent: 0, squares: Twofold::ZERO, exponent: -STEP };
+
+    /// The same, ready for one draw after the other where its sums can be kept as they are.
+    fn about_mean(self) -> Estimate {
+        let n = self.draws as f64;
+        let mean = self.sum.over(n);
+        let plain = self.sum_exponent == 0 && (self.exponent == 0 || self.squares == Twofold::ZERO);
+        if !plain || mean.hi.abs() >= UP {
+            return self.into();
+        }
+        let off = Twofold { hi: mean.lo, lo: 0.0 }.squared().by(n);
+        let moments = Self { squares: self.squares.join(off), exponent: 0, ..self };
+        Estimate { moments, pivot: Some(mean.hi) }
+    }
+
+    /// These draws and `other`'s.
+    fn merged(&self, other: &Self) -> Self {
+        if self.draws == 0 || other.draws == 0 {
+            return if self.draws == 0 { *other } else { *self };
+        }
+        let (n_a, n_b) = (self.draws as f64, other.draws as f64);
+        let sum_exponent = self.sum_exponent.max(other.sum_exponent);
+        let [a, b] = [*self, *other]
+            .map(|side| if side.sum_exponent == sum_exponent { side.sum } else { side.sum.times(DOWN) });
+        let delta = b.over(n_b).join(a.over(n_a).times(-1.0));
+        let (step, scaled) = match exponent_of(delta.hi) {
+            step if sum_exponent == 0 => {
+                (step, Twofold { hi: scale(delta.hi, step), lo: scale(delta.lo, step) })
+            }
+            _ => (STEP, delta),
+        };
+        let exponent = self.exponent.max(other.exponent).max(step);
+        let moved = scaled.squared().by(n_a).by(n_b).over(n_a + n_b);
+        let squares = lower(self.squares, self.exponent, exponent)
+            .join(lower(other.squares, other.exponent, exponent))
+            .join(lower(moved, step, exponent));
+        let (draws, sum) = (self.draws.checked_add(other.draws), a.join(b));
+        // more draws than can be counted weigh as the most that can
+        let share = if draws.is_some() { 1.0 } else { u64::MAX as f64 / (n_a + n_b) };
+        let [sum, squares] = if share == 1.0 { [sum, squares] } else { [sum.by(share), squares.by(share)] };
+        Self { draws: draws.unwrap_or(u64::MAX), sum, sum_exponent, squares, exponent }
     }
 
     /// The moments of draws that are all the same.
     fn of_equal(draw: f64, draws: u64) -> Self {
         let sum_exponent = if draw.abs() < HUGE { 0 } else { STEP };
         let sum = Twofold { hi: scale(draw, sum_exponent), lo: 0.0 }.by(draws as f64);
-        Self { draws, sum, sum_exponent, ..Self::new() }
+        Self { draws, sum, sum_exponent, ..Self::NONE }
     }
 
     /// The moments of up to [`SLICE`] draws, in two passes: any shift near the mean will do in the second.
@@ -196,7 +301,7 @@ impl Estimate {
         if draws.iter().all(|draw| *draw == draws[0]) {
             return Self::of_equal(draws[0], count);
         }
-        let [sum, squares] = widest(Moments { draws });
+        let [sum, squares] = widest(TwoPasses { draws });
         // 2⁻⁹⁰⁰ and 2⁹⁰⁰: far enough inside f64 that no square in the sum was rounded away or overflowed
         if (1.0 / HUGE..=HUGE).contains(&squares.hi) {
             Self { draws: count, sum, sum_exponent: 0, squares, exponent: 0 }
@@ -208,19 +313,21 @@ impl Estimate {
     /// Tiny, huge or non-finite draws: one at a time, which is exact for every exponent.
     #[cold]
     fn of_extreme_slice(draws: &[f64]) -> Self {
-        let mut estimate = Self::new();
-        for &draw in draws {
-            estimate.push(draw);
-        }
-        estimate
+        draws.iter().fold(Self::NONE, |moments, &draw| moments.merged(&Self::of_equal(draw, 1)))
     }
 }
 
 impl Extend<f64> for Estimate {
     fn extend<I: IntoIterator<Item = f64>>(&mut self, draws: I) {
+        let mut slice = Vec::with_capacity(SLICE);
         for draw in draws {
-            self.push(draw);
+            slice.push(draw);
+            if slice.len() == SLICE {
+                self.extend_from_slice(&slice);
+                slice.clear();
+            }
         }
+        self.extend_from_slice(&slice);
     }
 }
 
@@ -270,11 +377,11 @@ fn student_t(freedom: f64, tail: f64) -> f64 {
 }
 
 /// Their sum, and that of the squares about their mean.
-struct Moments<'a> {
+struct TwoPasses<'a> {
     draws: &'a [f64],
 }
 
-impl NullaryFnOnce for Moments<'_> {
+impl NullaryFnOnce for TwoPasses<'_> {
     type Output = [Twofold; 2];
 
     #[inline(always)]
@@ -365,8 +472,40 @@ fn lower(squares: Twofold, from: i32, to: i32) -> Twofold {
 /// An unevaluated sum `hi + lo` with |lo| ≤ ½ ulp(hi): twice the digits of `f64` (Dekker 1971).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Twofold {
+    #[serde(with = "any_number")]
     hi: f64,
+    #[serde(with = "any_number")]
     lo: f64,
+}
+
+/// JSON has no number that is not finite: those are the strings `inf`, `-inf` and `NaN`.
+mod any_number {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    pub fn serialize<S: Serializer>(number: &f64, to: S) -> Result<S::Ok, S::Error> {
+        if number.is_finite() || !to.is_human_readable() {
+            number.serialize(to)
+        } else {
+            to.collect_str(number)
+        }
+    }
+
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Number {
+        Finite(f64),
+        Text(String),
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+        if !from.is_human_readable() {
+            return f64::deserialize(from);
+        }
+        match Number::deserialize(from)? {
+            Number::Finite(number) => Ok(number),
+            Number::Text(text) => text.parse().map_err(D::Error::custom),
+        }
+    }
 }
 
 impl Twofold {
@@ -380,6 +519,13 @@ impl Twofold {
     fn plus(self, x: f64) -> Self {
         let (sum, lost) = two_sum(self.hi, x);
         if sum.is_finite() { Self::normal(sum, self.lo + lost) } else { Self { hi: sum, lo: 0.0 } }
+    }
+
+    /// The same without carrying `lo` over to `hi`, which the next addition would have to wait for.
+    #[inline(always)]
+    fn loosely_plus(self, x: f64, two_sum: impl Fn(f64, f64) -> (f64, f64)) -> Self {
+        let (hi, lost) = two_sum(self.hi, x);
+        Self { hi, lo: self.lo + lost }
     }
 
     fn join(self, other: Self) -> Self {

@@ -124,8 +124,47 @@ fn it_shows_as_many_digits_as_its_error_leaves() {
 #[test]
 fn serde_keeps_every_bit() {
     let estimate: Estimate = (0..1000).map(|i| 1.0 / f64::from(i + 3)).collect();
-    let json = serde_json::to_string(&estimate).unwrap();
-    assert_eq!(serde_json::from_str::<Estimate>(&json).unwrap(), estimate);
+    let mut pushed = Estimate::new();
+    (0..1000).for_each(|i| pushed.push(1.0 / f64::from(i + 3)));
+    for estimate in [estimate, pushed, Estimate::new(), Estimate::from_draws(&[f64::MAX, -1e-320])] {
+        let json = serde_json::to_string(&estimate).unwrap();
+        let back = serde_json::from_str::<Estimate>(&json).unwrap();
+        assert_eq!(back, estimate);
+        assert_eq!(serde_json::to_string(&back).unwrap(), json);
+    }
+}
+
+/// JSON has no infinity and no NaN, and an estimate may hold both.
+#[test]
+fn draws_that_are_not_finite_come_back_from_json() {
+    for draws in
+        [vec![f64::INFINITY], vec![1.0, f64::NEG_INFINITY, 2.0], vec![f64::NAN; 3], vec![0.5, f64::NAN]]
+    {
+        for estimate in [Estimate::from_draws(&draws), draws.iter().copied().collect()] {
+            let json = serde_json::to_string(&estimate).unwrap();
+            let back: Estimate = serde_json::from_str(&json).unwrap();
+            assert_eq!(serde_json::to_string(&back).unwrap(), json);
+            assert_eq!(back.mean().to_string(), estimate.mean().to_string(), "{draws:?}");
+        }
+    }
+    let json = serde_json::to_string(&Estimate::from_draws(&[1.0])).unwrap();
+    let wrong = json.replace("1.0", "\"one\"");
+    assert!(json != wrong && serde_json::from_str::<Estimate>(&wrong).is_err());
+}
+
+/// Merged with itself 64 times, an estimate of one draw has more draws than a `u64` holds: as many as it holds, not 0.
+#[test]
+fn more_draws_than_can_be_counted_stay_the_most() {
+    let mut estimate = Estimate::from_draws(&[1.0, 3.0]);
+    for doubling in 1..=70u32 {
+        estimate.merge(&estimate.clone());
+        assert_eq!(estimate.draws(), 2u64.checked_shl(doubling).filter(|n| *n > 0).unwrap_or(u64::MAX));
+        assert_eq!(estimate.mean(), 2.0);
+        let spread = estimate.variance().unwrap();
+        assert!((1.0..=2.0).contains(&spread), "{spread}");
+    }
+    let [low, high] = estimate.confidence_interval(0.95).unwrap();
+    assert!(low < 2.0 && 2.0 < high);
 }
 
 #[test]
@@ -186,5 +225,57 @@ fn z_counts_std_errors_beyond_rounding() {
         assert_eq!(off(7.0), 0.0, "{truth:e}");
         assert_eq!(off(9.0), f64::INFINITY.copysign(truth), "{truth:e}");
         assert_eq!(off(-9.0), f64::INFINITY.copysign(-truth), "{truth:e}");
+    }
+    // an infinite truth is infinitely far away, and one that is no number nowhere
+    for (truth, z) in
+        [(f64::INFINITY, Some(f64::NEG_INFINITY)), (f64::NEG_INFINITY, Some(f64::INFINITY)), (f64::NAN, None)]
+    {
+        assert_eq!(estimate.z(truth), z);
+        assert_eq!(Estimate::from_draws(&[1.0; 3]).z(truth), z);
+    }
+    assert_eq!(Estimate::from_draws(&[f64::INFINITY, 1.0]).z(f64::INFINITY), None);
+    assert_eq!(Estimate::from_draws(&[0.0; 3]).z(0.0), Some(0.0));
+}
+
+proptest! {
+    #![proptest_config(common::config(500))]
+
+    /// Draws taken one at a time give the moments of the slice. Each square is rounded to 2⁻⁵² of itself and at most twice what
+    /// is left of it at the end: 8 units in the last place in all, where none is out of range.
+    #[test]
+    fn one_at_a_time_is_as_good_as_a_slice(
+        words in prop::collection::vec(any::<u32>(), 2..3000),
+        offset in prop::sample::select(vec![0.0, 1.0, -1e6, 1e10, 1e15]),
+        size in prop::sample::select(vec![1.0, 1e-150, 1e-300, 1e250, 1e300]),
+        first in prop::sample::select(vec![0.0, 1e3, -1e9]),
+    ) {
+        let mut draws: Vec<f64> = words.iter().map(|word| (offset + f64::from(*word) / 4294967296.0) * size).collect();
+        draws[0] += first * size;
+        prop_assume!(draws.iter().all(|draw| draw.is_finite()));
+        let mut pushed = Estimate::new();
+        draws.iter().for_each(|draw| pushed.push(*draw));
+        let sliced = Estimate::from_draws(&draws);
+        prop_assert_eq!(pushed.draws(), sliced.draws());
+        prop_assert_eq!(pushed.mean(), sliced.mean());
+        let [a, b] = [pushed, sliced].map(|estimate| estimate.std_error().unwrap());
+        prop_assert!((a - b).abs() <= 8.0 * f64::EPSILON * b, "{} {}", a, b);
+    }
+
+    /// One after the other, draws of any size, equal ones too: as merged one by one.
+    #[test]
+    fn any_draws_can_be_taken_one_at_a_time(bits in prop::collection::vec(any::<u64>(), 2..60), repeat in 1usize..5) {
+        let draws = bits.into_iter().map(f64::from_bits).filter(|x| x.is_finite());
+        let draws: Vec<f64> = draws.flat_map(|x| std::iter::repeat_n(x, repeat)).collect();
+        prop_assume!(draws.len() >= 2);
+        let (mut pushed, mut merged) = (Estimate::new(), Estimate::new());
+        for draw in &draws {
+            pushed.push(*draw);
+            merged.merge(&Estimate::from_draws(&[*draw]));
+        }
+        prop_assert_eq!(pushed.draws(), merged.draws());
+        let [a, b] = [pushed, merged].map(|estimate| (estimate.mean(), estimate.std_error().unwrap()));
+        let size = draws.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+        prop_assert!((a.0 / size - b.0 / size).abs() <= 4.0 * f64::EPSILON, "{:?} {:?}", a, b);
+        prop_assert!((a.1 - b.1).abs() <= 1e-14 * b.1 || a.1 == b.1, "{:?} {:?}", a, b);
     }
 }
