@@ -96,6 +96,9 @@ pub enum Error {
         /// The run's limit.
         limit: u64,
     },
+    /// A time was to be kept by a clock that cannot.
+    #[error("the clock stands still or goes back: give a number of draws instead of a time")]
+    Clock,
     /// The function given is not a cumulative distribution function.
     #[error("the function given is not a cdf: {reason}")]
     NotACdf {

@@ -80,7 +80,7 @@ pub mod workbook;
 pub use density::{Density, Ratio, ratio};
 pub use error::{Error, Result};
 pub use estimate::Estimate;
-pub use run::{Budget, Cost, Estimator, FromFn, Outcome, Progress, Run, Shortfall, estimate, from_fn};
+pub use run::{Budget, Clock, Cost, Estimator, FromFn, Outcome, Progress, Run, Shortfall, estimate, from_fn};
 pub use stream::Stream;
 
 /// The README's code runs as a test.

@@ -31,7 +31,7 @@ use crate::box_room::{BoxRoom, Face, Vertex, nearest};
 use crate::density::Density;
 use crate::error::{Result, require, require_count};
 use crate::hemisphere::{Direction, Hemisphere};
-use crate::roulette::{Roulette, coin, draws_for};
+use crate::roulette::{Roulette, coin};
 use crate::run::{Estimator, from_fn};
 use crate::stream::Stream;
 
@@ -435,16 +435,6 @@ impl Paths {
             Hemisphere::Uniform => 2.0 * direction.cos_theta(),
         }
     }
-
-    /// The rays of a long path, roughly.
-    fn work(&self) -> f64 {
-        let rays = match self.ending {
-            Ending::Never => f64::from(self.counted[1]),
-            Ending::Roulette(roulette) => 1.0 / (1.0 - roulette.p_rr()),
-            Ending::ByWeight => 1.0 / (1.0 - most_albedo(&self.room)),
-        };
-        10.0 * (1.0 + rays)
-    }
 }
 
 impl Estimator for Paths {
@@ -455,10 +445,6 @@ impl Estimator for Paths {
 
     fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
         wide::fill::<f64>(self, rng, draws);
-    }
-
-    fn draws_per_block(&self) -> u64 {
-        draws_for(self.work())
     }
 }
 
@@ -476,10 +462,6 @@ impl Estimator for PathsF32 {
 
     fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
         wide::fill::<f32>(&self.0, rng, draws);
-    }
-
-    fn draws_per_block(&self) -> u64 {
-        self.0.draws_per_block()
     }
 }
 

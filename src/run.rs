@@ -1,10 +1,11 @@
 //! Running an estimator: draws in blocks, on all cores, with the same bits for any number of threads.
 //!
-//! Draws are cut into blocks of [`Estimator::draws_per_block`]. Block b draws from [`Stream::new`]`(seed, b)` and the
-//! blocks' estimates are merged in the order of b, so neither the number of threads nor their timing can
-//! be seen in the result. Memory does not grow with the number of draws.
+//! A run of n draws is cut into blocks: 64 to 127 of them, or more where they would be larger than 2¹⁴ draws. Block b draws
+//! from [`Stream::new`]`(seed, b)` and the blocks' estimates are merged in the order of b, so neither the number of threads
+//! nor their timing can be seen in the result. Memory does not grow with the number of draws.
 
 use std::fmt;
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
@@ -44,11 +45,6 @@ pub trait Estimator: Sync {
             *draw = self.draw(rng);
         }
     }
-
-    /// How many draws share a stream: fewer where one draw is much work, so that a run still keeps all cores busy.
-    fn draws_per_block(&self) -> u64 {
-        1 << 14
-    }
 }
 
 impl<E: Estimator + ?Sized> Estimator for &E {
@@ -58,10 +54,6 @@ impl<E: Estimator + ?Sized> Estimator for &E {
 
     fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
         (**self).fill(rng, draws);
-    }
-
-    fn draws_per_block(&self) -> u64 {
-        (**self).draws_per_block()
     }
 }
 
@@ -75,10 +67,6 @@ where
 
     fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
         (**self).fill(rng, draws);
-    }
-
-    fn draws_per_block(&self) -> u64 {
-        (**self).draws_per_block()
     }
 }
 
@@ -113,12 +101,14 @@ pub enum Budget {
     /// After this many draws.
     Draws(u64),
     /// After the draws that, by a pilot run's variance, bring the std error to this, but never fewer than the pilot's: some
-    /// 10⁶ where draws are cheap. The pilot has a stream of its own and is discarded, so the result stays exactly unbiased.
+    /// 10⁶, or as many as take 2²⁴ random numbers or evaluations. The pilot has a stream of its own and is discarded, so the
+    /// result stays exactly unbiased.
     StdError(f64),
     /// The same for the std error divided by the mean.
     RelativeError(f64),
-    /// After the first batch of blocks that ends past this time. The draws then depend on the machine;
-    /// `Draws` with the number that came of it repeats the result.
+    /// After the draws that this time has room for, by the pace of a pilot run that takes a tenth of it, but never fewer than
+    /// two. To stop by the clock itself would favour draws that are soon made, and their values with them (Glynn &
+    /// Heidelberger 1990). The number of draws depends on the machine; `Draws` with that number repeats the result.
     Time(Duration),
 }
 
@@ -187,7 +177,7 @@ impl Outcome {
     /// Whether the pilot run never varied, so that there was nothing to fix the number of draws by: either the estimator has
     /// no variance, or the pilot missed all of it. A value that a draw takes with probability p is missed by n draws with
     /// probability (1 − p)ⁿ: below 1e-12 for p ≥ 27.6/n, which is 1.7e-6 for the 2²⁴ draws after which a pilot of cheap
-    /// draws gives up. The run then takes as many draws as a pilot begins with.
+    /// draws gives up. The run then takes 2²⁰ draws, or the pilot's where it had fewer.
     pub fn pilot_never_varied(&self) -> bool {
         self.pilot.is_some_and(|pilot| pilot.std_error() == Some(0.0))
     }
@@ -195,6 +185,9 @@ impl Outcome {
 
 /// How far a run has come: draws done, and the total where it is known.
 pub type Progress<'a> = dyn Fn(u64, Option<u64>) + 'a;
+
+/// A clock: the time since any fixed moment.
+pub type Clock<'a> = dyn Fn() -> Duration + Sync + 'a;
 
 /// A run with its options.
 ///
@@ -212,12 +205,13 @@ pub struct Run<'a> {
     max_draws: u64,
     max_time: Option<Duration>,
     progress: Option<&'a Progress<'a>>,
+    clock: Option<&'a Clock<'a>>,
 }
 
 impl<'a> Run<'a> {
     /// A run with this seed, on all cores, of at most 10⁹ draws where the budget names an error.
     pub fn new(seed: u64) -> Self {
-        Self { seed, threads: None, max_draws: 1_000_000_000, max_time: None, progress: None }
+        Self { seed, threads: None, max_draws: 1_000_000_000, max_time: None, progress: None, clock: None }
     }
 
     /// Uses this many threads instead of one a core; the result of the same draws is the same.
@@ -233,7 +227,7 @@ impl<'a> Run<'a> {
     }
 
     /// Where the budget names an error, takes no more draws than this time allows by the pilot run's pace, though never fewer
-    /// than the pilot, which itself doubles no more once the time is over. An error out of reach is then no [`Error::Budget`]:
+    /// than the pilot, which itself doubles no more once a quarter of the time is over. An error out of reach is then no [`Error::Budget`]:
     /// the estimate comes with a [`Shortfall`]. The number of its draws depends on the machine, but not on their values, so it
     /// stays unbiased; `Budget::Draws` with that number repeats it.
     ///
@@ -257,12 +251,20 @@ impl<'a> Run<'a> {
         self
     }
 
+    /// Reads the time from this clock. Without it a run reads the system's, where there is one: on
+    /// `wasm32-unknown-unknown` there is none, and a budget of time is an error.
+    pub fn clock(mut self, clock: &'a Clock<'a>) -> Self {
+        self.clock = Some(clock);
+        self
+    }
+
     /// Runs `estimator` until `budget` is spent.
     ///
     /// # Errors
-    /// If the budget is empty or out of reach, the threads cannot be started, or a draw is NaN or infinite.
+    /// If the budget is empty or out of reach, the threads cannot be started, a draw is NaN or infinite, or a time is to be
+    /// kept by a clock that stands still or goes back.
     pub fn estimate(&self, estimator: &(impl Estimator + ?Sized), budget: Budget) -> Result<Outcome> {
-        let start = Instant::now();
+        let watch = Watch::start(self.clock);
         let mut blocks = Blocks { estimator, workers: self.workers()?, cost: Cost::default() };
         let by_count = |estimate| (estimate, None, None);
         let (estimate, pilot, shortfall) = match budget {
@@ -271,22 +273,24 @@ impl<'a> Run<'a> {
                 by_count(self.run_draws(&mut blocks, draws)?)
             }
             Budget::Time(time) => {
-                require("the time in seconds", time.as_secs_f64(), !time.is_zero(), "positive")?;
-                by_count(self.run_time(&mut blocks, start, time)?)
+                let ok = !time.is_zero() && time <= LONGEST;
+                require("the time in seconds", time.as_secs_f64(), ok, "positive and at most 1e6 (12 days)")?;
+                let draws = self.draws_in(&mut blocks, &watch, time)?;
+                by_count(self.run_draws(&mut blocks, draws)?)
             }
             Budget::StdError(target) => {
                 require("the std error", target, target > 0.0, "positive")?;
-                let pilot = self.pilot(&mut blocks, start, |_, std_error| std_error > 0.0)?;
-                let (draws, shortfall) = self.needed(&pilot, blocks.pilot_draws(), start, target)?;
+                let pilot = self.pilot(&mut blocks, &watch, |_, std_error| std_error > 0.0)?;
+                let (draws, shortfall) = self.needed(&pilot, &watch, target)?;
                 (self.run_draws(&mut blocks, draws)?, Some(pilot), shortfall)
             }
             Budget::RelativeError(target) => {
                 require("the relative error", target, target > 0.0, "positive")?;
-                let pilot = self.pilot(&mut blocks, start, |mean, std_error| {
+                let pilot = self.pilot(&mut blocks, &watch, |mean, std_error| {
                     std_error > 0.0 && std_error < 0.25 * mean.abs()
                 })?;
                 let target = target * pilot.mean().abs();
-                let (draws, shortfall) = self.needed(&pilot, blocks.pilot_draws(), start, target)?;
+                let (draws, shortfall) = self.needed(&pilot, &watch, target)?;
                 (self.run_draws(&mut blocks, draws)?, Some(pilot), shortfall)
             }
         };
@@ -294,7 +298,7 @@ impl<'a> Run<'a> {
             estimate,
             seed: self.seed,
             cost: blocks.cost,
-            elapsed: start.elapsed(),
+            elapsed: watch.elapsed(),
             pilot,
             shortfall,
         })
@@ -316,75 +320,89 @@ impl<'a> Run<'a> {
 
     fn run_draws<E: Estimator + ?Sized>(&self, blocks: &mut Blocks<'_, E>, draws: u64) -> Result<Estimate> {
         let mut estimate = Estimate::new();
+        let (mut next, mut batch) = (0, FIRST_BATCH);
+        let watch = Watch::start(self.clock);
         while estimate.draws() < draws {
-            blocks.extend(&mut estimate, self.seed, BATCH, draws)?;
+            let start = watch.elapsed();
+            blocks.extend(&mut estimate, self.seed, next..next.saturating_add(batch), draws)?;
+            next = next.saturating_add(batch);
             self.report(&estimate, Some(draws));
-        }
-        Ok(estimate)
-    }
-
-    fn run_time<E: Estimator + ?Sized>(
-        &self,
-        blocks: &mut Blocks<'_, E>,
-        start: Instant,
-        time: Duration,
-    ) -> Result<Estimate> {
-        let mut estimate = Estimate::new();
-        let mut batch = 1;
-        while start.elapsed() < time {
-            let batch_start = Instant::now();
-            blocks.extend(&mut estimate, self.seed, batch, u64::MAX)?;
-            self.report(&estimate, None);
-            // batches short enough to overrun by a few per cent, long enough to keep all cores busy
-            if batch < BATCH && batch_start.elapsed() < time / 32 {
-                batch *= 2;
+            // few enough for progress to be seen, and enough to keep all cores busy
+            if watch.elapsed().saturating_sub(start) < BETWEEN_LOOKS {
+                batch = (2 * batch).min(LARGEST_BATCH);
             }
         }
         Ok(estimate)
     }
 
-    /// Draws from a stream of its own until mean and std error are `enough`, doubling up to the limit on draws; without any
-    /// variance only up to [`STILL_BLOCKS`].
+    /// How many draws `time` has room for, by the pace at which all threads draw from streams of their own for a tenth of it.
+    /// Those draws are discarded: what decides on the number says nothing of the values that count.
+    fn draws_in<E: Estimator + ?Sized>(
+        &self,
+        blocks: &mut Blocks<'_, E>,
+        watch: &Watch<'_>,
+        time: Duration,
+    ) -> Result<u64> {
+        let (start, seed) = (watch.elapsed(), mix(self.seed ^ PILOT));
+        let until = start + time.saturating_sub(start) / 10;
+        let estimator = blocks.estimator;
+        let pace = |thread: usize| pace(estimator, seed, thread as u64, watch, [start, until]);
+        let paces = match &blocks.workers {
+            Workers::Caller => vec![pace(0)],
+            Workers::AllCores => rayon::broadcast(|context| pace(context.index())),
+            Workers::Own(pool) => pool.broadcast(|context| pace(context.index())),
+        };
+        let mut draws_per_second = 0.0;
+        for pace in paces {
+            let (draws_in_a_second, cost) = pace?;
+            draws_per_second += draws_in_a_second;
+            blocks.cost.add(cost);
+        }
+        let left = time.saturating_sub(watch.elapsed()).as_secs_f64();
+        // a float-to-int cast saturates
+        Ok(((draws_per_second * left) as u64).max(2))
+    }
+
+    /// Draws from streams of their own until mean and std error are `enough`, doubling up to the limit on draws; without any
+    /// variance only up to [`STILL`].
     fn pilot<E: Estimator + ?Sized>(
         &self,
         blocks: &mut Blocks<'_, E>,
-        start: Instant,
+        watch: &Watch<'_>,
         enough: impl Fn(f64, f64) -> bool,
     ) -> Result<Estimate> {
-        let seed = mix(self.seed ^ PILOT);
         let mut pilot = Estimate::new();
-        let mut batch = PILOT_BLOCKS;
-        let size = blocks.size();
-        loop {
-            blocks.extend(&mut pilot, seed, batch, self.max_draws.max(2))?;
+        let late = |part: f64| self.max_time.is_some_and(|time| watch.elapsed() >= time.mul_f64(part));
+        for stage in 0.. {
+            let draws = pilot.draws().max(FIRST_STAGE).min(self.max_draws.max(2) - pilot.draws());
+            let mut more = Estimate::new();
+            let seed = mix(self.seed ^ PILOT.wrapping_add(stage));
+            blocks.extend(&mut more, seed, 0..u64::MAX, draws)?;
+            pilot.merge(&more);
+            let work = pilot.draws().max(blocks.cost.work() / 16);
             let std_error = pilot.std_error().unwrap_or(0.0);
-            let still = std_error == 0.0 && pilot.draws() >= size.saturating_mul(STILL_BLOCKS);
-            let late = self.max_time.is_some_and(|time| start.elapsed() >= time);
-            if enough(pilot.mean(), std_error) || still || late || pilot.draws() >= self.max_draws {
-                return Ok(pilot);
+            let long_enough = work >= LONG && enough(pilot.mean(), std_error);
+            let still = std_error == 0.0 && work >= STILL;
+            if long_enough || still || late(0.25) || pilot.draws() >= self.max_draws.max(2) {
+                break;
             }
-            batch = pilot.draws() / size;
         }
+        Ok(pilot)
     }
 
     /// The draws to take for a std error of `target`, by the pilot's variance, and what is missing where time is short.
-    fn needed(
-        &self,
-        pilot: &Estimate,
-        first: u64,
-        start: Instant,
-        target: f64,
-    ) -> Result<(u64, Option<Shortfall>)> {
+    fn needed(&self, pilot: &Estimate, watch: &Watch<'_>, target: f64) -> Result<(u64, Option<Shortfall>)> {
         let reached = pilot.std_error().unwrap_or(0.0);
-        if reached == 0.0 {
-            return Ok((first.min(pilot.draws()), None));
-        }
         // with fewer draws than the pilot's, what the pilot saw may be missing: the error bar would say less than is known
         let fewest = pilot.draws();
+        if reached == 0.0 {
+            return Ok((fewest.min(LONG), None));
+        }
         let needed = (fewest as f64 * (reached / target).powi(2)).ceil().max(fewest as f64).min(f64::MAX);
         let limit = match self.max_time {
             Some(time) => {
-                let times = time.as_secs_f64() / start.elapsed().as_secs_f64().max(1e-9);
+                let elapsed = watch.elapsed().as_secs_f64();
+                let times = (time.as_secs_f64() - elapsed) / elapsed.max(1e-9);
                 ((fewest as f64 * times) as u64).min(self.max_draws).max(fewest)
             }
             None => self.max_draws.max(fewest),
@@ -405,18 +423,34 @@ impl<'a> Run<'a> {
     }
 }
 
-/// More threads than any machine has cores for only bring it to its knees.
+/// Threads, at most.
 const MOST_THREADS: usize = 1024;
 
-/// Blocks between two looks at the clock or the progress bar.
-const BATCH: u64 = 1024;
+/// The longest time to run for.
+const LONGEST: Duration = Duration::from_secs(1_000_000);
 
-/// Blocks of a pilot run: its std error is known to about 10 %.
-const PILOT_BLOCKS: u64 = 64;
+/// Blocks of a run of few draws, at least: its last ones leave hardly a thread idle.
+const BLOCKS: u64 = 64;
 
-/// Blocks after which a pilot run that has not varied is taken to have no variance. Blocks are about equal work, so this is
-/// a tenth of a second where draws are cheap, and fewer draws where they are not.
-const STILL_BLOCKS: u64 = 1024;
+/// Draws in a block, at most.
+const LARGEST_BLOCK: u64 = 1 << 14;
+
+/// Blocks between two reports of progress: at first, and at most.
+const FIRST_BATCH: u64 = 64;
+const LARGEST_BATCH: u64 = 1024;
+
+/// Batches shorter than this are doubled.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
+
+/// Draws that a pilot run begins with.
+const FIRST_STAGE: u64 = 64;
+
+/// Draws of a pilot run where they are cheap: its std error is known to a part in a thousand, if the fourth moment is that of a
+/// normal law. A draw of more than 16 random numbers or evaluations counts for more than one.
+const LONG: u64 = 1 << 20;
+
+/// Draws after which a pilot run that has not varied is taken to have no variance.
+const STILL: u64 = 1 << 24;
 
 /// Sets the pilot's seed apart from the run's.
 const PILOT: u64 = 0x7069_6c6f_7420_7275;
@@ -437,37 +471,100 @@ struct Blocks<'e, E: ?Sized> {
 }
 
 impl<E: Estimator + ?Sized> Blocks<'_, E> {
-    /// Draws in a block.
-    fn size(&self) -> u64 {
-        self.estimator.draws_per_block().max(1)
-    }
-
-    /// Draws that a pilot run begins with.
-    fn pilot_draws(&self) -> u64 {
-        self.size().saturating_mul(PILOT_BLOCKS)
-    }
-
-    /// Takes the next `batch` blocks into `estimate`, but no more than `limit` draws in all.
-    fn extend(&mut self, estimate: &mut Estimate, seed: u64, batch: u64, limit: u64) -> Result<()> {
-        let size = self.size();
-        let first = estimate.draws() / size;
-        let last = first.saturating_add(batch).min(limit.div_ceil(size));
+    /// Takes these blocks of a run of `draws` draws into `estimate`.
+    fn extend(&mut self, estimate: &mut Estimate, seed: u64, range: Range<u64>, draws: u64) -> Result<()> {
+        let size = block_size(draws);
         let estimator = self.estimator;
-        let one = |block| one_block(estimator, seed, block, size.min(limit - block * size));
-        let side_by_side = || -> Vec<_> { (first..last).into_par_iter().map(one).collect() };
+        let one = |block| one_block(estimator, seed, block, size.min(draws - block * size));
+        let (first, end) = (range.start, range.end.min(draws.div_ceil(size)));
+        // each block may go to another thread: a slow one holds up no other
+        let count = usize::try_from(end.saturating_sub(first)).unwrap_or(usize::MAX);
+        let side_by_side = || -> Vec<_> {
+            (0..count).into_par_iter().with_max_len(1).map(|n| one(first + n as u64)).collect()
+        };
         let results = match &self.workers {
-            Workers::Caller => (first..last).map(one).collect(),
+            Workers::Caller => (first..end).map(one).collect(),
             Workers::AllCores => side_by_side(),
             Workers::Own(pool) => pool.install(side_by_side),
         };
         for result in results {
             let (of_block, cost) = result?;
             estimate.merge(&of_block);
-            self.cost.random_numbers += cost.random_numbers;
-            self.cost.evaluations += cost.evaluations;
+            self.cost.add(cost);
         }
         Ok(())
     }
+}
+
+/// Draws in each block of a run of `draws`: a power of two, so that runs of about as many draws share their streams.
+fn block_size(draws: u64) -> u64 {
+    let size = (draws / BLOCKS).clamp(1, LARGEST_BLOCK);
+    1 << size.ilog2()
+}
+
+impl Cost {
+    fn add(&mut self, other: Self) {
+        self.random_numbers = self.random_numbers.saturating_add(other.random_numbers);
+        self.evaluations = self.evaluations.saturating_add(other.evaluations);
+    }
+
+    fn work(&self) -> u64 {
+        self.random_numbers.max(self.evaluations)
+    }
+}
+
+/// The one place where a run reads the time.
+enum Watch<'a> {
+    System(Option<Instant>),
+    Own(&'a Clock<'a>, Duration),
+}
+
+impl<'a> Watch<'a> {
+    fn start(clock: Option<&'a Clock<'a>>) -> Self {
+        match clock {
+            Some(clock) => Self::Own(clock, clock()),
+            None if cfg!(all(target_arch = "wasm32", target_os = "unknown")) => Self::System(None),
+            None => Self::System(Some(Instant::now())),
+        }
+    }
+
+    fn elapsed(&self) -> Duration {
+        match self {
+            Self::System(start) => start.map_or(Duration::ZERO, |start| start.elapsed()),
+            Self::Own(clock, start) => clock().saturating_sub(*start),
+        }
+    }
+}
+
+/// Draws that a clock has to move in: a microsecond or more, and some milliseconds where draws are no cheaper than most.
+const TICKLESS: u64 = 1 << 16;
+
+/// Draws a second of one of the threads, which began at the first of two times, up to the second.
+fn pace(
+    estimator: &(impl Estimator + ?Sized),
+    seed: u64,
+    thread: u64,
+    watch: &Watch<'_>,
+    [start, until]: [Duration; 2],
+) -> Result<(f64, Cost)> {
+    let (mut draws, mut chunk, mut cost, mut now) = (0, 1, Cost::default(), start);
+    for block in 0.. {
+        let (_, of_block) = one_block(estimator, seed, thread << 32 | block, chunk)?;
+        cost.add(of_block);
+        draws += chunk;
+        let before = now;
+        now = watch.elapsed();
+        if now < before || (now == start && draws >= TICKLESS) {
+            return Err(Error::Clock);
+        }
+        if now >= until {
+            break;
+        }
+        // no more than what is left of the time has room for
+        let room = draws as f64 * (until - now).as_secs_f64() / (now - start).as_secs_f64();
+        chunk = (2 * chunk).min(LARGEST_BLOCK).min(room as u64).max(1);
+    }
+    Ok((draws as f64 / (now - start).as_secs_f64().max(1e-9), cost))
 }
 
 fn one_block(

@@ -406,18 +406,6 @@ fn paths_say_what_they_count() {
     }
 }
 
-/// Threads share a run by its blocks, so one is about the same work however long the paths are: tens of thousands of random numbers, those of idle lanes included.
-#[test]
-fn a_block_is_the_same_work_however_long_the_paths() {
-    for (albedo, bounces) in [(0.5, UpTo(1)), (0.5, UpTo(64)), (0.5, All(0.99)), (0.99, AllByWeight)] {
-        let paths = paths(furnace(albedo), bounces, WAYS[0]);
-        let run = Run::new(common::seed(546)).estimate(&paths, Budget::Draws(2000)).unwrap();
-        let numbers = run.cost.random_numbers as f64 / 2000.0 * paths.draws_per_block() as f64;
-        println!("{bounces:?}: {numbers}");
-        assert!((2e4..=2e5).contains(&numbers), "{bounces:?}: {numbers}");
-    }
-}
-
 // ---- the furnace ---------------------------------------------------------------------------------------------------
 
 const ALBEDOS: [f64; 4] = [0.2, 0.5, 0.8, 0.99];

@@ -342,31 +342,6 @@ fn bounces_cost_what_they_are_said_to() {
     assert!((coins - 1.0 / 0.17).abs() <= Z * (law.variance() / n as f64).sqrt());
 }
 
-/// Threads share a run by its blocks: 2¹⁸ coins each on average, 1/(1 − p) a draw, and 2¹⁴ draws at most.
-#[test]
-fn a_block_is_the_same_work_however_many_bounces() {
-    for (p, draws) in [(0.5, 1 << 14), (0.75, 1 << 14), (0.984375, 1 << 12), (1.0 - 0.5f64.powi(30), 1)] {
-        assert_eq!(roulette(p).bounces_by_simulation().unwrap().draws_per_block(), draws, "p = {p}");
-    }
-    // whatever is wrapped around it
-    fn per_block(estimator: impl Estimator) -> u64 {
-        estimator.draws_per_block()
-    }
-    let bounces = || roulette(0.984375).bounces_by_simulation().unwrap();
-    assert_eq!(per_block(roulette(0.9).wrap(bounces())), 1 << 12);
-    let lent = bounces();
-    let lent: &dyn Estimator = &lent;
-    assert_eq!(per_block(lent), 1 << 12);
-    assert_eq!(per_block(Box::new(bounces()) as Box<dyn Estimator>), 1 << 12);
-    for model in [light(0.8, 0.25), light(0.999, 0.0078125)] {
-        let (paths, cut) = (model.roulette(0.984375).unwrap(), model.truncated(63).unwrap());
-        for (draws, cost) in [(paths.draws_per_block(), paths.cost()), (cut.draws_per_block(), cut.cost())] {
-            let work = draws as f64 * cost;
-            assert!(draws == 1 << 14 || (work <= 262_144.0 && work + cost > 262_144.0), "{draws} × {cost}");
-        }
-    }
-}
-
 /// All of 20 draws below a tenth of the mean have probability (1 − e^(−0.1))²⁰ = 4e-21.
 #[test]
 fn millions_of_bounces_need_no_stack() {

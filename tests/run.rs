@@ -2,11 +2,11 @@
 
 mod common;
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use rand::Rng;
 use unbiased::inversion::Exponential;
-use unbiased::{Budget, Error, Estimator, Outcome, Run, Stream, estimate, from_fn};
+use unbiased::{Budget, Error, Estimate, Estimator, Outcome, Run, Stream, estimate, from_fn};
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
@@ -50,7 +50,7 @@ const GOLDEN: [[u64; 2]; 4] = [
     [0x3bb836093a205090, 0xa8ab70fe16e65a75],
     [0x770e185e39990021, 0xc3f7075ec3ea9536],
 ];
-const GOLDEN_MEAN: u64 = 0x3fe000beac89a9ca;
+const GOLDEN_MEAN: u64 = 0x3fe00ca96dabc07b;
 
 /// The sixteen generators of a stream, by the same separate program: the words k of uniform numbers k·2⁻⁵³.
 #[test]
@@ -275,14 +275,12 @@ fn an_error_that_is_easily_reached_takes_as_many_draws_as_the_pilot() {
         assert_eq!(outcome.estimate.draws(), 1 << 20);
         assert!(outcome.estimate.mean() > 0.0 && !outcome.pilot_never_varied());
     }
-    let outcome = Run::new(1).estimate(&Wide, Budget::StdError(1.0)).unwrap();
-    assert_eq!(outcome.estimate.draws(), 64 * 7);
     // the limit on draws comes first
     let outcome = Run::new(1).max_draws(100).estimate(&Wide, Budget::StdError(1.0)).unwrap();
     assert_eq!(outcome.estimate.draws(), 100);
 }
 
-/// Without any variance a pilot gives up after 1024 blocks, and what follows is as long as its beginning. A value that comes up once in 10⁶ draws, which
+/// Without any variance a pilot gives up after 2²⁴ draws, and what follows is of 2²⁰. A value that comes up once in 10⁶ draws, which
 /// the first 2²⁰ may miss, is missed by 2²⁴ with probability 5e-8; with the fixed seeds it is not.
 #[test]
 fn a_pilot_without_variance_ends_early_but_not_at_once() {
@@ -323,15 +321,12 @@ fn what_is_out_of_reach_is_said_in_few_digits() {
     assert!(relative.unwrap_err().to_string().starts_with("a std error of 1.5e-6 takes about 3.7e10 draws"));
 }
 
-/// Twenty times the time and more are allowed for: other tests keep the machine busy.
 #[test]
 fn a_time_limit_ends_a_run_short_of_its_error() {
     let uniform = from_fn(|rng| rng.uniform());
     for budget in [Budget::StdError(1e-300), Budget::StdError(1e-9), Budget::RelativeError(1e-9)] {
-        let start = Instant::now();
         let run = Run::new(common::seed(12)).max_draws(u64::MAX).max_time(Duration::from_millis(200));
         let outcome = run.estimate(&uniform, budget).unwrap();
-        assert!(start.elapsed() < Duration::from_secs(10));
         let short = outcome.shortfall.unwrap();
         let draws = outcome.estimate.draws();
         assert!(short.draws > draws as f64 && outcome.estimate.std_error().unwrap() > short.std_error);
@@ -350,10 +345,10 @@ fn a_time_limit_ends_a_run_short_of_its_error() {
         }
     );
     assert!(outcome.shortfall.is_none());
-    // no time at all: the pilot's first blocks, and as many draws again
+    // no time at all: the pilot's beginning, and as many draws again
     let outcome =
         Run::new(1).max_time(Duration::ZERO).estimate(&from_fn(|_| 1.0), Budget::StdError(1.0)).unwrap();
-    assert_eq!((outcome.pilot.unwrap().draws(), outcome.estimate.draws()), (1 << 20, 1 << 20));
+    assert_eq!((outcome.pilot.unwrap().draws(), outcome.estimate.draws()), (64, 64));
     // the limit on draws holds, too
     let run = Run::new(1).max_draws(1_500_000).max_time(Duration::from_secs(100));
     let outcome = run.estimate(&uniform, Budget::StdError(1e-6)).unwrap();
@@ -379,10 +374,7 @@ fn a_pilot_that_never_varies_says_so_and_one_out_of_reach_is_an_error() {
 #[test]
 fn a_budget_of_time_is_kept_and_its_draws_repeat_it() {
     let uniform = from_fn(|rng| rng.uniform());
-    let start = Instant::now();
     let outcome = Run::new(3).estimate(&uniform, Budget::Time(Duration::from_millis(200))).unwrap();
-    // an upper bound with room for a machine that is busy with the other tests
-    assert!(outcome.elapsed >= Duration::from_millis(200) && start.elapsed() < Duration::from_secs(20));
     let again = estimate(&uniform, Budget::Draws(outcome.estimate.draws()), 3).unwrap();
     assert_eq!(outcome.estimate, again);
 }
@@ -397,7 +389,7 @@ fn progress_is_reported_up_to_the_end() {
     assert_eq!(seen.last(), Some(&(40_000_000, Some(40_000_000))));
 }
 
-/// An estimator that fills side by side, and one that wants few draws in a block.
+/// An estimator that fills side by side.
 struct Wide;
 
 impl Estimator for Wide {
@@ -408,26 +400,166 @@ impl Estimator for Wide {
     fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
         draws.fill_with(|| 2.0 * rng.uniform());
     }
-
-    fn draws_per_block(&self) -> u64 {
-        7
-    }
 }
 
 /// E[2U] = 1, std error √(1/3/10⁵): 7 of them is a false alarm of 2.6e-12 and catches a bias of 1.3 %; `draw` would give 1/2.
 #[test]
-fn a_run_uses_fill_and_the_block_size_through_references_and_boxes() {
+fn a_run_uses_fill_through_references_and_boxes() {
     let direct = estimate(&Wide, Budget::Draws(100_000), common::seed(10)).unwrap();
     assert!((direct.mean() - 1.0).abs() <= 7.0 * (1.0f64 / 3.0 / 1e5).sqrt());
     let boxed: Box<dyn Estimator> = Box::new(Wide);
     assert_eq!(estimate(&boxed, Budget::Draws(100_000), common::seed(10)).unwrap(), direct);
     assert_eq!(estimate(&&Wide, Budget::Draws(100_000), common::seed(10)).unwrap(), direct);
-    // block 1 begins after 7 draws
-    let mut first = Stream::new(common::seed(10), 1);
-    let mut draws = [0.0; 1];
-    Wide.fill(&mut first, &mut draws);
-    let [eighth] = draws;
-    let eight = estimate(&Wide, Budget::Draws(8), common::seed(10)).unwrap().mean() * 8.0;
-    let seven = estimate(&Wide, Budget::Draws(7), common::seed(10)).unwrap().mean() * 7.0;
-    assert!((eight - seven - eighth).abs() <= 1e-14);
+}
+
+/// A run of n draws has blocks of the largest power of two up to n/64, and up to 2¹⁴: these sums of a block's last draw and
+/// the next one's first are found in no other way.
+#[test]
+fn blocks_are_cut_by_the_number_of_draws() {
+    let uniform = from_fn(|rng| rng.uniform());
+    let seed = common::seed(10);
+    for (draws, size) in
+        [(1u64, 1), (127, 1), (128, 2), (65_535, 512), (65_536, 1024), (1 << 20, 1 << 14), (3 << 20, 1 << 14)]
+    {
+        let mut expected = Estimate::new();
+        for block in 0..draws.div_ceil(size) {
+            let mut rng = Stream::new(seed, block);
+            let own = size.min(draws - block * size);
+            expected.merge(&(0..own).map(|_| rng.uniform()).collect());
+        }
+        assert_eq!(estimate(&uniform, Budget::Draws(draws), seed).unwrap(), expected, "{draws}");
+    }
+}
+
+/// A clock that is one draw further each time it is read, in `step`s: what a run makes of its time, without a busy machine's
+/// say in it. One thread reads it once for every chunk, so the draws of a time are those of its pace.
+struct Ticking {
+    now: std::sync::atomic::AtomicU64,
+}
+
+impl Ticking {
+    fn new() -> Self {
+        Self { now: 0.into() }
+    }
+
+    /// What a draw takes, added to the time by the draw itself.
+    fn take(&self, time: Duration) {
+        self.now.fetch_add(time.as_nanos() as u64, std::sync::atomic::Ordering::SeqCst);
+    }
+
+    fn read(&self) -> Duration {
+        Duration::from_nanos(self.now.load(std::sync::atomic::Ordering::SeqCst))
+    }
+}
+
+/// Draws of 1 ns to 10 ms by a clock of their own: within a tenth of the time, or a draw where those are longer than that.
+#[test]
+fn a_budget_of_time_is_kept_whatever_a_draw_costs() {
+    for time in [1_000_000, 100_000_000, 3_000_000_000u64] {
+        for cost in [1, 7, 130, 2_000, 41_000, 200_000, 3_100_000, 10_000_000] {
+            let clock = Ticking::new();
+            let slow = from_fn(|rng| {
+                clock.take(Duration::from_nanos(cost));
+                rng.uniform()
+            });
+            if time / cost > 20_000_000 {
+                continue;
+            }
+            let read = || clock.read();
+            let run = Run::new(1).threads(1).clock(&read);
+            let outcome = run.estimate(&slow, Budget::Time(Duration::from_nanos(time))).unwrap();
+            let off = outcome.elapsed.as_nanos().abs_diff(u128::from(time)) as u64;
+            // two draws follow a pilot that one alone makes too long
+            assert!(
+                off <= (time / 10).max(cost) || outcome.estimate.draws() == 2,
+                "{cost} ns for {time} ns: {off}"
+            );
+            assert!(outcome.elapsed == clock.read() && outcome.estimate.draws() >= 2);
+            let again = Run::new(1).estimate(&slow, Budget::Draws(outcome.estimate.draws())).unwrap();
+            assert_eq!(outcome.estimate, again.estimate);
+        }
+    }
+}
+
+/// Draws that take the longer the larger they are: a run that stopped by the clock would favour the small ones. Of 10⁴ seeds
+/// with some 10 draws each, |z| ≥ 6.5 is a false alarm of 8e-11, and a bias of 1 % of a draw's deviation is seen (z = 3 per
+/// 1e5 draws' deviation, 1 %, is 3.2 std errors of the mean of seeds).
+#[test]
+fn a_budget_of_time_is_unbiased_where_work_depends_on_the_value() {
+    let mut means = Estimate::new();
+    for seed in 0..10_000 {
+        let clock = Ticking::new();
+        let exponential = Exponential::new(1.0).unwrap();
+        let slow = from_fn(|rng| {
+            let x = exponential.draw(rng);
+            clock.take(Duration::from_secs_f64(1e-3 * x));
+            x
+        });
+        let read = || clock.read();
+        let run = Run::new(common::seed(1000 + seed)).threads(1).clock(&read);
+        means.push(run.estimate(&slow, Budget::Time(Duration::from_millis(12))).unwrap().estimate.mean());
+    }
+    let z = means.z(1.0).unwrap();
+    println!("{means}, z = {z}");
+    assert!(z.abs() <= 6.5, "{z}");
+}
+
+#[test]
+fn a_time_that_cannot_be_kept_is_an_error_or_two_draws() {
+    let uniform = from_fn(|rng| rng.uniform());
+    for threads in [1, 2, 8] {
+        for nanoseconds in [1, 50_000] {
+            let run = Run::new(1).threads(threads);
+            let outcome = run.estimate(&uniform, Budget::Time(Duration::from_nanos(nanoseconds))).unwrap();
+            assert!(outcome.estimate.draws() >= 2 && outcome.estimate.mean().is_finite());
+        }
+        // a draw that takes longer than the whole time
+        let sleepy = from_fn(|rng| {
+            std::thread::sleep(Duration::from_millis(2));
+            rng.uniform()
+        });
+        let run = Run::new(1).threads(threads);
+        let outcome = run.estimate(&sleepy, Budget::Time(Duration::from_micros(10))).unwrap();
+        assert_eq!(outcome.estimate.draws(), 2);
+    }
+    for time in [Duration::from_secs(1_000_000_000), Duration::MAX] {
+        let error = Run::new(1).estimate(&uniform, Budget::Time(time)).unwrap_err();
+        assert!(
+            error.to_string().starts_with("the time in seconds must be positive and at most 1e6"),
+            "{error}"
+        );
+    }
+    // a clock that stands still, and one that goes back
+    let still = || Duration::ZERO;
+    let reads = std::sync::atomic::AtomicU64::new(1 << 40);
+    let back = || Duration::from_nanos(reads.fetch_sub(1000, std::sync::atomic::Ordering::SeqCst));
+    for threads in [1, 2] {
+        for clock in [&still as &unbiased::Clock<'_>, &back] {
+            let run = Run::new(1).threads(threads).clock(clock);
+            let found = run.estimate(&uniform, Budget::Time(Duration::from_millis(1)));
+            assert_eq!(found, Err(Error::Clock));
+            // other budgets do not mind
+            let run = run.max_draws(1 << 21).max_time(Duration::from_secs(1));
+            assert_eq!(run.estimate(&uniform, Budget::Draws(10)).unwrap().estimate.draws(), 10);
+            assert!(run.estimate(&uniform, Budget::StdError(1e-9)).unwrap().shortfall.is_some());
+        }
+    }
+}
+
+/// A pilot of draws that are much work is short: 2²⁰ draws of 10⁶ random numbers each would take an hour.
+#[test]
+fn a_pilot_of_expensive_draws_is_short() {
+    let expensive = from_fn(|rng| {
+        rng.count_evaluations(1_000_000);
+        rng.uniform()
+    });
+    let outcome = Run::new(1).estimate(&expensive, Budget::StdError(1.0)).unwrap();
+    assert_eq!(outcome.pilot.unwrap().draws(), 64);
+    let still = from_fn(|rng| {
+        rng.count_evaluations(1_000_000);
+        1.0
+    });
+    let outcome = Run::new(1).estimate(&still, Budget::StdError(1.0)).unwrap();
+    assert!(outcome.pilot_never_varied() && outcome.pilot.unwrap().draws() == 512);
+    assert_eq!(outcome.estimate.draws(), 512);
 }

@@ -20,7 +20,8 @@ pub enum Verdict {
     Undecided,
 }
 
-/// Checks whether `estimator`, whose draws lie in `range`, has the mean `truth` to within one part in a thousand.
+/// Checks whether `estimator`, whose draws lie in `range`, has the mean `truth` to within one part in a thousand, of the range
+/// where the truth is 0.
 ///
 /// The short form of [`Unbiased`], with its error probabilities: a right estimator is called biased with probability at most 1e-12.
 ///
@@ -96,15 +97,23 @@ pub struct Look {
 
 impl Unbiased {
     /// Checks against the mean `truth`, for draws in `range`, with δ = 1e-3, α = 1e-12, β = 1e-6, seed 1 and at most 10⁹ draws.
+    /// Where the truth is 0, which no relative tolerance is a part of, a difference of 1e-3 of the range counts as none, or of
+    /// the distance to its lower end where the upper one is infinite.
     ///
     /// # Errors
     /// If the range is empty or NaN, its lower end infinite, or the truth not strictly inside it.
     pub fn new(truth: f64, [low, high]: [f64; 2]) -> Result<Self> {
         require("the range's lower end", low, low.is_finite(), "finite")?;
         require("the range's upper end", high, high > low, "above the lower end")?;
+        let ok = high == f64::INFINITY || (high - low).is_finite();
+        require("the range's length", high - low, ok, "within f64")?;
         let inside = low < truth && truth < high;
         require("the truth", truth, inside, "strictly inside the range of the draws")?;
-        let tolerance = 1e-3 * truth.abs();
+        let range = if high.is_finite() { high - low } else { truth - low };
+        let unit = if truth == 0.0 { range } else { truth.abs() };
+        // less where the truth is close to an end, beyond which nothing can be told apart
+        let tolerance = (1e-3 * unit).min(0.5 * (truth - low)).min(0.5 * (high - truth));
+        require("the tolerance, a part in a thousand,", tolerance, tolerance > 0.0, "positive")?;
         Ok(Self { truth, low, high, tolerance, alpha: 1e-12, beta: 1e-6, seed: 1, max_draws: 1_000_000_000 })
     }
 
@@ -204,42 +213,45 @@ impl Unbiased {
         let mut wealths: [Wealth; 4] = Default::default();
         let (mut above, mut below) = (false, false);
         let mut estimate = Estimate::new();
-        let size = estimator.draws_per_block().max(1);
-        let (mut next, mut batch) = (0, 1);
+        // slow draws that are far off are few: the first looks come soon
+        let (mut next, mut batch, mut size) = (0, 1, FIRST_LEAF);
         loop {
-            let blocks: Vec<_> = (next..next + batch)
+            let leaves: Vec<_> = (next..next + batch)
                 .into_par_iter()
-                .map(|block| self.leaves(estimator, &bettors, block, size))
+                .map(|block| self.leaf(estimator, &bettors, block, size))
                 .collect();
-            for leaves in blocks {
-                for leaf in leaves? {
-                    estimate.merge(&leaf.estimate);
-                    for (wealth, growth) in wealths.iter_mut().zip(&leaf.growths) {
-                        wealth.grow(growth);
-                    }
-                    let [up, down, up_low, down_high] = wealths.each_ref().map(Wealth::log_mean);
-                    let two_sided = up.max(down) + (0.5 + 0.5 * (-(up - down).abs()).exp()).ln();
-                    each(Look {
-                        draws: estimate.draws(),
-                        against_truth: two_sided,
-                        against_too_low: up_low,
-                        against_too_high: down_high,
-                    });
-                    above |= up_low >= -self.beta.ln();
-                    below |= self.high.is_finite() && down_high >= -self.beta.ln();
-                    if two_sided >= -self.alpha.ln() {
-                        return Ok(self.report(Verdict::Biased, estimate));
-                    }
-                    if above && below {
-                        return Ok(self.report(Verdict::Unbiased, estimate));
-                    }
+            for leaf in leaves {
+                let leaf = leaf?;
+                estimate.merge(&leaf.estimate);
+                for (wealth, growth) in wealths.iter_mut().zip(&leaf.growths) {
+                    wealth.grow(growth);
+                }
+                let [up, down, up_low, down_high] = wealths.each_ref().map(Wealth::log_mean);
+                let two_sided = up.max(down) + (0.5 + 0.5 * (-(up - down).abs()).exp()).ln();
+                each(Look {
+                    draws: estimate.draws(),
+                    against_truth: two_sided,
+                    against_too_low: up_low,
+                    against_too_high: down_high,
+                });
+                above |= up_low >= -self.beta.ln();
+                below |= self.high.is_finite() && down_high >= -self.beta.ln();
+                if two_sided >= -self.alpha.ln() {
+                    return Ok(self.report(Verdict::Biased, estimate));
+                }
+                if above && below {
+                    return Ok(self.report(Verdict::Unbiased, estimate));
                 }
             }
             if estimate.draws() >= self.patience(&estimate) {
                 return Ok(self.report(Verdict::Undecided, estimate));
             }
             next += batch;
-            batch = (2 * batch).min(MOST_BLOCKS);
+            if size < LEAF {
+                size *= 2;
+            } else {
+                batch = (2 * batch).min(MOST_BLOCKS);
+            }
         }
     }
 
@@ -266,56 +278,51 @@ impl Unbiased {
         ]
     }
 
-    /// One block's draws, in leaves of up to [`LEAF`].
-    fn leaves(
+    /// One block of so many draws.
+    fn leaf(
         &self,
         estimator: &(impl Estimator + ?Sized),
         [up, down, up_low, down_high]: &[Bets; 4],
         block: u64,
-        size: u64,
-    ) -> Result<Vec<Leaf>> {
-        let slack = if self.high.is_finite() { 1e-12 * (self.high - self.low) } else { 0.0 };
-        let mut leaves = Vec::new();
-        let mut done = 0;
-        walk_block(estimator, self.seed, block, size, |slice| {
-            for draws in slice.chunks(LEAF) {
-                let outside = |draw: &f64| !(self.low - slack..=self.high + slack).contains(draw);
-                if let Some(draw) = draws.iter().position(outside) {
-                    let (value, range) = (draws[draw], [self.low, self.high]);
-                    return Err(Error::OutOfRange {
-                        seed: self.seed,
-                        block,
-                        draw: done + draw as u64,
-                        value,
-                        range,
-                    });
-                }
-                let from_low = |draw: f64| (draw - self.low).max(0.0);
-                let from_high = |draw: f64| (self.high - draw).max(0.0);
-                let downwards = |bets: &Bets| {
-                    if self.high.is_finite() { bets.growth(draws, from_high) } else { Growth::default() }
-                };
-                leaves.push(Leaf {
-                    estimate: Estimate::from_draws(draws),
-                    growths: [
-                        up.growth(draws, from_low),
-                        downwards(down),
-                        up_low.growth(draws, from_low),
-                        downwards(down_high),
-                    ],
-                });
-                done += draws.len() as u64;
-            }
+        size: usize,
+    ) -> Result<Leaf> {
+        let Self { seed, low, high, .. } = *self;
+        let mut draws = Vec::with_capacity(size);
+        walk_block(estimator, seed, block, size as u64, |slice| {
+            draws.extend_from_slice(slice);
             Ok(())
         })?;
-        Ok(leaves)
+        // rounding may take a draw past an end, by a part of the range or of the end itself
+        let reach = if high.is_finite() { high - low } else { self.truth - low };
+        let slack = |end: f64| 1e-12 * reach + 4.0 * f64::EPSILON * end.abs();
+        let inside = low - slack(low)..=if high.is_finite() { high + slack(high) } else { high };
+        if let Some(draw) = draws.iter().position(|draw| !inside.contains(draw)) {
+            let value = draws[draw];
+            return Err(Error::OutOfRange { seed, block, draw: draw as u64, value, range: [low, high] });
+        }
+        let from_low = |draw: f64| (draw - low).max(0.0);
+        let from_high = |draw: f64| (high - draw).max(0.0);
+        let downwards = |bets: &Bets| {
+            if high.is_finite() { bets.growth(&draws, from_high) } else { Growth::default() }
+        };
+        Ok(Leaf {
+            estimate: Estimate::from_draws(&draws),
+            growths: [
+                up.growth(&draws, from_low),
+                downwards(down),
+                up_low.growth(&draws, from_low),
+                downwards(down_high),
+            ],
+        })
     }
 
     /// The draws after which nothing more is expected: twice what a right estimator of this variance needs but for one run in a million.
     fn patience(&self, estimate: &Estimate) -> u64 {
         let bound = -self.beta.ln() + 10f64.ln();
         let deviations = (2.0 * bound).sqrt() + 7.0;
-        let spread = estimate.variance().unwrap_or(0.0) / (self.tolerance * self.tolerance);
+        // of the std deviation, since a variance may be beyond f64
+        let deviation = estimate.std_error().unwrap_or(0.0) * (estimate.draws() as f64).sqrt();
+        let spread = (deviation / self.tolerance).powi(2);
         // an estimator that hardly varies still gains only about d/room a draw, on the side with the larger room
         let (up, down) = (self.truth - self.low, self.high - self.truth);
         let room = if down.is_finite() { up.max(down) } else { up };
@@ -324,11 +331,12 @@ impl Unbiased {
     }
 }
 
-/// Draws between two looks at the wealth.
+/// Draws between two looks at the wealth, at most, and before the first.
 const LEAF: usize = 256;
+const FIRST_LEAF: usize = 16;
 
 /// Blocks in flight at a time.
-const MOST_BLOCKS: u64 = 64;
+const MOST_BLOCKS: u64 = 4096;
 
 /// What some draws did to the estimate and to each bettor's wealth.
 struct Leaf {

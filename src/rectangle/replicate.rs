@@ -16,11 +16,6 @@ fn require_points(name: &'static str, n: u64) -> Result<u32> {
     Ok(require_count(name, n, (1..=LIMIT).contains(&n), "from 1 to 65536")? as u32)
 }
 
-/// Draws that share a stream: about as many evaluations as an estimator has that makes one a draw.
-fn per_block(evaluations: u64) -> u64 {
-    ((1 << 14) / evaluations).max(1)
-}
-
 impl Rectangle {
     /// The estimator A/n² Σᵢ Σⱼ f(Xᵢ, Yⱼ): n values of x, n of y, all n² pairs.
     ///
@@ -127,10 +122,6 @@ impl<F: Fn(f64, f64) -> f64 + Sync> Estimator for AllPairs<F> {
             *draw = self.replicate(rng, &mut xs);
         }
     }
-
-    fn draws_per_block(&self) -> u64 {
-        per_block(self.evaluations())
-    }
 }
 
 /// The estimator over one point in each cell of a grid; see [`Rectangle::jittered`].
@@ -162,10 +153,6 @@ impl<F: Fn(f64, f64) -> f64 + Sync> Estimator for Jittered<F> {
         rng.count_evaluations(self.evaluations());
         mean.times_area()
     }
-
-    fn draws_per_block(&self) -> u64 {
-        per_block(self.evaluations())
-    }
 }
 
 /// The estimator over a scrambled Sobol set; see [`Rectangle::sobol`].
@@ -192,10 +179,6 @@ impl<F: Fn(f64, f64) -> f64 + Sync> Estimator for Sobol<F> {
         }
         rng.count_evaluations(self.points.into());
         mean.times_area()
-    }
-
-    fn draws_per_block(&self) -> u64 {
-        per_block(self.points.into())
     }
 }
 

@@ -3,7 +3,7 @@
 use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
 
-use super::{P_RR, Roulette, draws_for, one_minus_power, power};
+use super::{P_RR, Roulette, one_minus_power, power};
 use crate::error::{Result, require};
 use crate::extended::Extended;
 use crate::fast;
@@ -135,10 +135,6 @@ impl Estimator for BouncesBySimulation {
     fn draw(&self, rng: &mut Stream) -> f64 {
         let bounces: u64 = self.sample(rng);
         bounces as f64
-    }
-
-    fn draws_per_block(&self) -> u64 {
-        draws_for(1.0 + self.roulette.mean())
     }
 }
 

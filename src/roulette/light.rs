@@ -1,6 +1,6 @@
 //! What roulette costs and buys: a model of light paths in which all of it has a closed form.
 
-use super::{coin, draws_for};
+use super::coin;
 use crate::error::{Result, require, require_count};
 use crate::extended::Extended;
 use crate::run::Estimator;
@@ -213,10 +213,6 @@ impl Estimator for RoulettePaths {
         rng.count_evaluations(vertices);
         sum
     }
-
-    fn draws_per_block(&self) -> u64 {
-        draws_for(self.cost())
-    }
 }
 
 /// Paths that end after a set number of vertices, a biased estimator of [`LightModel::mean`]; see [`LightModel::truncated`].
@@ -309,10 +305,6 @@ impl Estimator for TruncatedPaths {
         }
         rng.count_evaluations(self.vertices());
         sum
-    }
-
-    fn draws_per_block(&self) -> u64 {
-        draws_for(self.cost())
     }
 }
 

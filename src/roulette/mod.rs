@@ -126,10 +126,6 @@ impl<X: Estimator> Estimator for RussianRoulette<X> {
         // divided, not multiplied by 1/p_rr: that is infinite for p_rr < 5.6e-309
         if self.roulette.continues(rng) { self.x.draw(rng) / self.roulette.p_rr } else { 0.0 }
     }
-
-    fn draws_per_block(&self) -> u64 {
-        self.x.draws_per_block()
-    }
 }
 
 /// True with probability p exactly, for any p in \[0, 1\].
@@ -166,9 +162,4 @@ fn power(p: f64, n: u128) -> f64 {
 /// 1 − pⁿ without cancellation, for n ≥ 1.
 fn one_minus_power(p: f64, n: u128) -> f64 {
     if n == 1 { 1.0 - p } else { (n as f64 * p.ln()).exp_m1().abs() }
-}
-
-/// How many draws share a stream where each is this much work: a block stays a matter of milliseconds.
-pub(crate) fn draws_for(work: f64) -> u64 {
-    (f64::from(1 << 18) / work).clamp(1.0, f64::from(1 << 14)) as u64
 }
