@@ -10,11 +10,11 @@ use std::fmt;
 
 use pulp::NullaryFnOnce;
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use crate::error::{Error, Result, require};
 use crate::extended::two_sum;
 use crate::fast::widest;
+use crate::quantile::student_t;
 
 /// Draws summed in one two-pass sweep: they stay in the first-level cache between the passes.
 pub(crate) const SLICE: usize = 1024;
@@ -192,7 +192,7 @@ impl Estimate {
                 draws: self.draws(),
             });
         };
-        let reach = student_t(freedom, 0.5 * (1.0 - level)) * std_error;
+        let reach = student_t(freedom, level) * std_error;
         Ok([self.mean() - reach, self.mean() + reach])
     }
 
@@ -362,18 +362,6 @@ impl fmt::Display for Estimate {
 fn places(std_error: f64) -> usize {
     let leading = std_error.log10().floor();
     if leading.is_finite() { (1.0 - leading).clamp(0.0, 17.0) as usize } else { 6 }
-}
-
-/// The t with P(T > t) = `tail` for Student's T with `freedom` degrees of freedom.
-fn student_t(freedom: f64, tail: f64) -> f64 {
-    // beyond 10⁷ degrees t and z agree to 1e-6, and statrs' quantile starts to lose digits
-    if freedom <= 1e7
-        && let Ok(t) = StudentsT::new(0.0, 1.0, freedom)
-    {
-        -t.inverse_cdf(tail)
-    } else {
-        -Normal::standard().inverse_cdf(tail)
-    }
 }
 
 /// Their sum, and that of the squares about their mean.

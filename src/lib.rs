@@ -69,6 +69,7 @@ pub mod lambertian;
 #[cfg(feature = "notebook")]
 pub mod notebook;
 pub mod paths;
+mod quantile;
 pub mod rectangle;
 pub mod roulette;
 pub mod run;

@@ -1,6 +1,6 @@
 //! Running an estimator: draws in blocks, on all cores, with the same bits for any number of threads.
 //!
-//! A run of n draws is cut into blocks: 64 to 127 of them, or more where they would be larger than 2¹⁴ draws. Block b draws
+//! A run of n draws is cut into blocks: 32 to 63 of them, or more where they would be larger than 2¹⁴ draws. Block b draws
 //! from [`Stream::new`]`(seed, b)` and the blocks' estimates are merged in the order of b, so neither the number of threads
 //! nor their timing can be seen in the result. Memory does not grow with the number of draws.
 
@@ -430,7 +430,7 @@ const MOST_THREADS: usize = 1024;
 const LONGEST: Duration = Duration::from_secs(1_000_000);
 
 /// Blocks of a run of few draws, at least: its last ones leave hardly a thread idle.
-const BLOCKS: u64 = 64;
+const BLOCKS: u64 = 32;
 
 /// Draws in a block, at most.
 const LARGEST_BLOCK: u64 = 1 << 14;
@@ -590,7 +590,7 @@ pub(crate) fn walk_block(
     mut take: impl FnMut(&[f64]) -> Result<()>,
 ) -> Result<Cost> {
     let mut rng = Stream::new(seed, block);
-    let mut buffer = [0.0; SLICE];
+    let mut buffer = vec![0.0; draws.min(SLICE as u64) as usize];
     let mut done = 0;
     while done < draws {
         let slice = &mut buffer[..(draws - done).min(SLICE as u64) as usize];

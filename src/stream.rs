@@ -172,6 +172,18 @@ fn on_the_grid(bits: u64) -> f64 {
 /// Generators side by side: as many as fill the widest vectors twice, since the steps of one depend on each other.
 const LANES: usize = 16;
 
+/// What sets the lanes apart.
+const SALTS: [[u64; LANES]; 4] = {
+    let mut salts = [[0; LANES]; 4];
+    let mut n = 0;
+    while n < 4 * LANES {
+        // lane 0 would be the stream's own generator
+        salts[n % 4][n / 4] = mix(GOLDEN.wrapping_mul(n as u64 + 4));
+        n += 1;
+    }
+    salts
+};
+
 /// Xoshiro256++ in every lane.
 #[derive(Debug, Clone)]
 struct Lanes {
@@ -180,11 +192,11 @@ struct Lanes {
 
 impl Lanes {
     fn new(seed: u64, block: u64) -> Self {
-        let mut state = [[0; LANES]; 4];
-        for ((number, lanes), mixed) in (0u64..).zip(&mut state).zip(mixed(seed, block)) {
-            for (lane, word) in (1u64..).zip(lanes) {
-                // 0 would be the stream's own generator
-                *word = mix(mixed.wrapping_add(mix(GOLDEN.wrapping_mul(4 * lane + number))));
+        let mixed = mixed(seed, block);
+        let mut state = SALTS;
+        for (lanes, mixed) in state.iter_mut().zip(mixed) {
+            for word in lanes {
+                *word = mix(mixed.wrapping_add(*word));
             }
         }
         Self { state }
@@ -290,7 +302,7 @@ fn mixed(seed: u64, block: u64) -> [u64; 4] {
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// SplitMix64's finaliser (Stafford's mix 13): a bijection in which every input bit moves half of the output's.
-pub(crate) fn mix(mut z: u64) -> u64 {
+pub(crate) const fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     z ^ (z >> 31)

@@ -117,12 +117,13 @@ fn a_trace_ends_as_the_report_says() {
     }
 }
 
-/// 256 draws of 10¹⁰ times the mean claimed multiply the boldest stake, a tenth of a half, by (0.1 + 0.9e10)²⁵⁶, which is far outside f64.
+/// 16 draws of 10³⁰ times the mean claimed multiply the boldest stake, a tenth of a half, by (0.1 + 0.9e30)¹⁶, which is far
+/// outside f64.
 #[test]
 fn wealth_beyond_f64_is_kept_as_its_logarithm() {
-    let (_, looks) = Unbiased::new(1e-10, [0.0, 1.0]).unwrap().trace(&from_fn(|_| 1.0)).unwrap();
-    let wealth = 256.0 * (0.1 + 0.9e10f64).ln() - 20f64.ln();
-    assert_eq!(looks[0].draws, 256);
+    let (_, looks) = Unbiased::new(1e-30, [0.0, 1.0]).unwrap().trace(&from_fn(|_| 1.0)).unwrap();
+    let wealth = 16.0 * (0.1 + 0.9e30f64).ln() - 20f64.ln();
+    assert_eq!(looks[0].draws, 16);
     assert!((looks[0].against_truth / wealth - 1.0).abs() <= 1e-12, "{:?}, not {wealth}", looks[0]);
 }
 
@@ -263,6 +264,82 @@ fn bad_input_is_an_error() {
             "D = {bad}"
         );
     }
+}
+
+/// A tolerance relative to a truth of 0 would be 0, and 10⁹ draws would not do.
+#[test]
+fn a_truth_of_0_has_a_tolerance_of_the_range() {
+    for (range, tolerance) in [([-0.5, 0.5], 1e-3), ([-1.0, 3.0], 4e-3), ([-2.0, f64::INFINITY], 2e-3)] {
+        assert!(
+            (Unbiased::new(0.0, range).unwrap().max_draws(0).run(&from_fn(|_| 0.0)).unwrap().tolerance
+                - tolerance)
+                .abs()
+                <= 1e-15
+        );
+    }
+    let centred = |bias: f64| from_fn(move |rng| (rng.uniform() - 0.5 + bias).clamp(-0.5, 0.5));
+    let right = check::unbiased(&centred(0.0), 0.0, [-0.5, 0.5]).unwrap();
+    assert_eq!(right.verdict, Verdict::Unbiased, "{right}");
+    assert!(right.estimate.draws() < 10_000_000, "{right}");
+    let wrong = check::unbiased(&centred(0.01), 0.0, [-0.5, 0.5]).unwrap();
+    assert_eq!(wrong.verdict, Verdict::Biased, "{wrong}");
+    // a truth close to an end leaves no room for a thousandth of it
+    let close = check::unbiased(&from_fn(|_| 0.9999), 0.9999, [0.0, 1.0]).unwrap();
+    assert!(close.tolerance <= 5.1e-5 && close.verdict != Verdict::Biased, "{close}");
+}
+
+/// Powers of two change no rounding: the same draws, looks and verdicts at every scale, as far as 2^±1000.
+#[test]
+fn verdicts_do_not_depend_on_the_scale() {
+    for bias in [1.0, 0.98] {
+        let at = |exponent: i32| {
+            let scale = 2f64.powi(exponent);
+            let draws = from_fn(move |rng| scale * (bias * (0.5 + rng.uniform())));
+            let check = Unbiased::new(scale, [0.0, 1.5 * scale]).unwrap().within(1e-2).unwrap();
+            let report = check.run(&draws).unwrap();
+            (report.verdict, report.estimate.draws())
+        };
+        let plain = at(0);
+        assert_eq!(plain.0, if bias == 1.0 { Verdict::Unbiased } else { Verdict::Biased });
+        for exponent in [-1000, -600, -530, 530, 600, 1000] {
+            assert_eq!(at(exponent), plain, "2^{exponent}");
+        }
+    }
+    // and where it is no power of two
+    let large = from_fn(|rng| 1e160 * (0.5 + rng.uniform()));
+    assert_eq!(check::unbiased(&large, 1e160, [0.0, 1.5e160]).unwrap().verdict, Verdict::Unbiased);
+    for range in [[-f64::MAX, f64::MAX], [-1e308, 1e308]] {
+        assert!(Unbiased::new(0.0, range).unwrap_err().to_string().starts_with("the range's length"));
+    }
+    let error = Unbiased::new(5e-324, [0.0, 1.0]).unwrap_err();
+    assert_eq!(error.to_string(), "the tolerance, a part in a thousand, must be positive, not 0");
+}
+
+/// A draw is off its end by a rounding of the end, however short the range is beside it.
+#[test]
+fn rounding_at_the_ends_of_a_range_is_forgiven() {
+    let far = |off: f64| from_fn(move |rng| 1e10 + off + 1e-6 * rng.uniform());
+    let range = [1e10, 1e10 + 1e-6];
+    let check = Unbiased::new(1e10 + 5e-7, range);
+    // one step of f64 there is 1.9e-6: the range is one number wide
+    assert!(check.is_err());
+    let range = [1e10, 1e10 + 8e-6];
+    let check = Unbiased::new(1e10 + 4e-6, range).unwrap().within_absolute(2e-6).unwrap().max_draws(1000);
+    for off in [0.0, 7.6e-6, -1.9e-6] {
+        assert!(!matches!(check.run(&far(off)), Err(Error::OutOfRange { .. })), "{off}");
+    }
+    assert!(matches!(check.run(&far(-3e-5)), Err(Error::OutOfRange { .. })));
+    let tiny = from_fn(|rng| rng.uniform() - 1e-17);
+    let above = Unbiased::new(0.5, [0.0, f64::INFINITY]).unwrap().max_draws(1000);
+    assert!(above.run(&tiny).is_ok());
+}
+
+/// Draws that are much work are looked at after 16 of them: far enough off, they are refuted there.
+#[test]
+fn what_is_far_off_is_refuted_in_a_few_draws() {
+    let far = from_fn(|rng| 0.9 + 0.1 * rng.uniform());
+    let report = check::unbiased(&far, 0.01, [0.0, 1.0]).unwrap();
+    assert_eq!((report.verdict, report.estimate.draws()), (Verdict::Biased, 16));
 }
 
 // ---- without noise ----
