@@ -221,14 +221,20 @@ pub struct Inversion<F> {
     high: f64,
 }
 
-/// A fall of the cdf by less than this is taken for rounding: library cdfs are monotone to about 1e-14 only.
+/// What a cdf may be off by: sums of weights end an ulp or two from 1, and library cdfs are good to 1e-14 only.
 const ROUNDING: f64 = 1.0 / (1u64 << 40) as f64;
+
+/// A computed probability, put into [0, 1] where only rounding has taken it out; None of anything else.
+pub(crate) fn rounded_probability(p: f64) -> Option<f64> {
+    (-ROUNDING..=1.0 + ROUNDING).contains(&p).then(|| p.clamp(0.0, 1.0))
+}
 
 impl<F: Fn(f64) -> f64> Inversion<F> {
     /// The inverse of `cdf` on the support [low, high], whose ends may be infinite.
     ///
     /// # Errors
-    /// If the support is empty or NaN, or the cdf, looked at in 65 points across the support, leaves [0, 1] or falls by more than 2⁻⁴⁰.
+    /// If the support is empty or NaN, or the cdf, looked at in 65 points across the support, leaves [0, 1] or
+    /// falls, by more than 2⁻⁴⁰.
     pub fn new(cdf: F, [low, high]: [f64; 2]) -> Result<Self> {
         require("the support's lower end", low, low < f64::INFINITY, "a number below +∞")?;
         require("the support's upper end", high, high > low, "above the lower end")?;
@@ -245,21 +251,25 @@ impl<F: Fn(f64) -> f64> Inversion<F> {
         Ok(inversion)
     }
 
-    /// F⁻(u) = inf{x : F(x) ≥ u}, the smallest `f64` in the support at which the cdf reaches u; the support's lower end at u = 0.
+    /// F⁻(u) = inf{x : F(x) ≥ u}, the smallest `f64` in the support at which the cdf reaches u; the support's
+    /// lower end at u = 0. Where the cdf ends less than 2⁻⁴⁰ below u, it is where the cdf reaches its last value.
     ///
     /// # Errors
-    /// If u is not in \[0, 1\], or on the way the cdf is seen to leave \[0, 1\], to fall by more than 2⁻⁴⁰, or never to reach u.
+    /// If u is not in \[0, 1\], or on the way the cdf is seen to leave \[0, 1\], to fall, or not to reach u, by more
+    /// than 2⁻⁴⁰.
     pub fn inverse_cdf(&self, u: f64) -> Result<f64> {
         require_probability(u)?;
         let (mut below, mut above) = (order(self.low), order(self.high));
         let (mut f_below, mut f_above) = (self.probability(self.low)?, self.probability(self.high)?);
-        if f_below >= u {
-            return Ok(self.low);
-        }
-        if f_above < u {
+        if f_above < u - ROUNDING {
             let reason =
                 format!("at the support's upper end {:?} it is {f_above}, and never reaches {u}", self.high);
             return Err(Error::NotACdf { reason });
+        }
+        // a cdf that ends at 1 but for rounding has reached 1 there
+        let u = u.min(f_above);
+        if f_below >= u {
+            return Ok(self.low);
         }
         // invariant: F(below) < u ≤ F(above)
         while above.wrapping_sub(below) as u64 > 1 {
@@ -279,11 +289,8 @@ impl<F: Fn(f64) -> f64> Inversion<F> {
 
     fn probability(&self, x: f64) -> Result<f64> {
         let f = (self.cdf)(x);
-        if (0.0..=1.0).contains(&f) {
-            Ok(f)
-        } else {
-            Err(Error::NotACdf { reason: format!("F({x:?}) is {f}, outside [0, 1]") })
-        }
+        let outside = || Error::NotACdf { reason: format!("F({x:?}) is {f}, outside [0, 1]") };
+        rounded_probability(f).ok_or_else(outside)
     }
 }
 

@@ -301,6 +301,72 @@ fn jumps_and_flats_are_nothing_special() {
     assert!((2.0..2.0 + 1e-15).contains(&above), "{above}");
 }
 
+/// The cdf of weights w₁, w₂, … at 1, 2, …, as one sums them.
+fn cumulated(mut weights: Vec<f64>) -> impl Fn(f64) -> f64 {
+    for i in 1..weights.len() {
+        weights[i] += weights[i - 1];
+    }
+    move |x: f64| if x < 1.0 { 0.0 } else { weights[(x as usize).min(weights.len()) - 1] }
+}
+
+/// The first k at which summed weights reach u, or their last value where they end an ulp or two below u.
+fn first_to_reach(cdf: impl Fn(f64) -> f64, n: usize, u: f64) -> f64 {
+    let u = u.min(cdf(n as f64));
+    (1..=n).map(|k| k as f64).find(|k| cdf(*k) >= u).unwrap()
+}
+
+/// n times 1/n is 1 - 2⁻⁵³, 1 or 1 + 2⁻⁵², or further off: no less a cdf for it.
+#[test]
+fn summed_weights_are_a_cdf() {
+    let mut ends = [0, 0, 0];
+    for n in 2..200 {
+        let cdf = cumulated(vec![1.0 / n as f64; n]);
+        let last = cdf(n as f64);
+        ends[if last < 1.0 { 0 } else { 1 + usize::from(last > 1.0) }] += 1;
+        for support in [[1.0, n as f64], [0.0, 300.0], [f64::NEG_INFINITY, f64::INFINITY]] {
+            let inversion = Inversion::new(&cdf, support).unwrap();
+            let grid = (1..2 * n).map(|i| i as f64 / (2 * n) as f64);
+            for u in grid.chain([0.5f64.powi(54), 1.0 - 0.5f64.powi(53), 1.0]) {
+                assert_eq!(
+                    inversion.inverse_cdf(u).unwrap(),
+                    first_to_reach(&cdf, n, u),
+                    "{n} {support:?} {u}"
+                );
+            }
+            assert_eq!(inversion.inverse_cdf(0.0).unwrap(), support[0]);
+            let last: f64 = inversion.sample(&mut Constant(u64::MAX));
+            assert_eq!(last, n as f64);
+        }
+    }
+    assert!(ends.iter().all(|count| *count > 0), "{ends:?}");
+}
+
+/// A shortfall, an excursion or a fall is rounding up to 2⁻⁴⁰, and a fault beyond.
+#[test]
+fn rounding_is_forgiven_to_one_part_in_two_to_the_forty() {
+    let share = 0.5f64.powi(40);
+    // uniform on [0, 10], but for an end below or above 1, a start below 0, or a fall at the end
+    let faults: [fn(f64, f64) -> f64; 4] = [
+        |x, off| 0.1 * x * (1.0 - off),
+        |x, off| if x < 9.0 { 0.1 * x } else { 1.0 + off },
+        |x, off| if x < 1.0 { -off } else { 0.1 * x },
+        |x, off| if x < 9.0 { 0.1 * x } else { 1.0 - if x < 10.0 { 0.0 } else { off } },
+    ];
+    for (i, fault) in faults.into_iter().enumerate() {
+        for u in [0.5, 1.0 - 0.5f64.powi(53), 1.0] {
+            let invert = |off| Inversion::new(|x| fault(x, off), [0.0, 10.0])?.inverse_cdf(u);
+            assert!((0.0..=10.0).contains(&invert(0.9 * share).unwrap()), "{i} {u}");
+        }
+        let nearly = Inversion::new(|x| fault(x, 0.9 * share), [0.0, 10.0]).unwrap();
+        assert_eq!(nearly.inverse_cdf(0.0).unwrap(), 0.0, "{i}");
+        let (reason, u) =
+            [("never reaches 1", 1.0), ("outside [0, 1]", 0.5), ("outside [0, 1]", 0.5), ("falls", 0.95)][i];
+        let invert = |off| Inversion::new(|x| fault(x, off), [0.0, 10.0])?.inverse_cdf(u);
+        let error = invert(1.1 * share).unwrap_err().to_string();
+        assert!(error.contains(reason), "{i}: {error}");
+    }
+}
+
 /// Samples by bisection have the cdf: n = 2·10⁵ see D = 0.0085 (α = 1e-12), for the discrete law too.
 #[test]
 fn samples_of_any_cdf_have_that_cdf() {
@@ -473,6 +539,19 @@ proptest! {
             weight * h * exponential.pdf(from + h * (f64::from(2 * piece + 1) + node))
         })).sum();
         prop_assert!((exponential.cdf(to) - exponential.cdf(from) - integral).abs() <= 1e-12);
+    }
+
+    /// Any weights, divided by their sum and summed again.
+    #[test]
+    fn any_summed_weights_are_a_cdf(
+        weights in prop::collection::vec(1e-3..1.0f64, 1..300), u in 0.0..=1.0f64, top in any::<bool>(),
+    ) {
+        let (n, total) = (weights.len(), weights.iter().sum::<f64>());
+        let cdf = cumulated(weights.iter().map(|w| w / total).collect());
+        let u = if top { 1.0 - 0.5f64.powi(53) } else { u };
+        let x = Inversion::new(&cdf, [0.0, f64::INFINITY]).unwrap().inverse_cdf(u).unwrap();
+        let first = if u > 0.0 { first_to_reach(&cdf, n, u) } else { 0.0 };
+        prop_assert_eq!(x, first);
     }
 
     /// Any table of jumps makes a cdf; its inverse finds the jump, whatever the support.
