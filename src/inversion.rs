@@ -217,36 +217,48 @@ impl Estimator for Exponential {
 #[derive(Debug, Clone, Copy)]
 pub struct Inversion<F> {
     cdf: F,
+    /// The support's lower end.
     low: f64,
-    high: f64,
+    /// Where samples are looked for: the support, or where all but 2⁻⁴⁰ of its mass is.
+    within: [f64; 2],
 }
 
 /// What a cdf may be off by: sums of weights end an ulp or two from 1, and library cdfs are good to 1e-14 only.
 const ROUNDING: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// A computed probability, put into [0, 1] where only rounding has taken it out; None of anything else.
-pub(crate) fn rounded_probability(p: f64) -> Option<f64> {
-    (-ROUNDING..=1.0 + ROUNDING).contains(&p).then(|| p.clamp(0.0, 1.0))
+/// Whether it is in [0, 1] but for rounding. NaN is not.
+pub(crate) fn is_probability(computed: f64) -> bool {
+    (-ROUNDING..=1.0 + ROUNDING).contains(&computed)
 }
 
 impl<F: Fn(f64) -> f64> Inversion<F> {
-    /// The inverse of `cdf` on the support [low, high], whose ends may be infinite.
+    /// The inverse of `cdf` on the support [low, high], whose ends may be infinite. There F is 0 and 1, and `cdf`
+    /// is not asked. Where it is NaN from some large number on, as ∞·0 is, F counts as 1 there if it has come
+    /// within 2⁻⁴⁰ of that before; and as 0 towards −∞.
     ///
     /// # Errors
     /// If the support is empty or NaN, or the cdf, looked at in 65 points across the support, leaves [0, 1] or
-    /// falls, by more than 2⁻⁴⁰.
+    /// falls, by more than 2⁻⁴⁰, is NaN elsewhere, or ends flat so that there is mass at infinity.
     pub fn new(cdf: F, [low, high]: [f64; 2]) -> Result<Self> {
         require("the support's lower end", low, low < f64::INFINITY, "a number below +∞")?;
         require("the support's upper end", high, high > low, "above the lower end")?;
-        let inversion = Self { cdf, low, high };
-        let (first, last) = (order(low), order(high));
-        let mut before = (low, 0.0);
-        for step in 0..=64 {
-            let part = (last as i128 - first as i128) * step / 64;
-            let x = from_order((first as i128 + part) as i64);
-            let f = inversion.probability(x)?;
-            not_falling(before, (x, f))?;
-            before = (x, f);
+        let mut inversion = Self { cdf, low, within: [low, high] };
+        let [first, last] = inversion.within.map(|end| inversion.last_number(0f64.clamp(low, high), end));
+        let mut looks = [(first, 0.0); 65];
+        for (step, look) in looks.iter_mut().enumerate() {
+            let part = (order(last) as i128 - order(first) as i128) * step as i128 / 64;
+            let x = from_order((order(first) as i128 + part) as i64);
+            *look = (x, inversion.probability(x)?);
+        }
+        for (before, after) in looks.iter().zip(&looks[1..]) {
+            not_falling(*before, *after)?;
+        }
+        let [start, second, .., last_but_one, end] = looks;
+        if low.is_infinite() {
+            inversion.within[0] = infinite_end(low, start, start.1, second.1 - start.1)?;
+        }
+        if high.is_infinite() {
+            inversion.within[1] = infinite_end(high, end, 1.0 - end.1, end.1 - last_but_one.1)?;
         }
         Ok(inversion)
     }
@@ -259,17 +271,21 @@ impl<F: Fn(f64) -> f64> Inversion<F> {
     /// than 2⁻⁴⁰.
     pub fn inverse_cdf(&self, u: f64) -> Result<f64> {
         require_probability(u)?;
-        let (mut below, mut above) = (order(self.low), order(self.high));
-        let (mut f_below, mut f_above) = (self.probability(self.low)?, self.probability(self.high)?);
+        if u == 0.0 {
+            return Ok(self.low);
+        }
+        let [low, high] = self.within;
+        let (mut below, mut above) = (order(low), order(high));
+        let (mut f_below, mut f_above) = (self.probability(low)?, self.probability(high)?);
         if f_above < u - ROUNDING {
             let reason =
-                format!("at the support's upper end {:?} it is {f_above}, and never reaches {u}", self.high);
+                format!("at the support's upper end {high:?} it is {f_above}, and never reaches {u}");
             return Err(Error::NotACdf { reason });
         }
         // a cdf that ends at 1 but for rounding has reached 1 there
         let u = u.min(f_above);
         if f_below >= u {
-            return Ok(self.low);
+            return Ok(low);
         }
         // invariant: F(below) < u ≤ F(above)
         while above.wrapping_sub(below) as u64 > 1 {
@@ -288,9 +304,42 @@ impl<F: Fn(f64) -> f64> Inversion<F> {
     }
 
     fn probability(&self, x: f64) -> Result<f64> {
-        let f = (self.cdf)(x);
+        let f = match x {
+            f64::NEG_INFINITY => 0.0,
+            f64::INFINITY => 1.0,
+            x => (self.cdf)(x),
+        };
         let outside = || Error::NotACdf { reason: format!("F({x:?}) is {f}, outside [0, 1]") };
-        rounded_probability(f).ok_or_else(outside)
+        if is_probability(f) { Ok(f) } else { Err(outside()) }
+    }
+
+    /// Of an infinite end, the last number on the way there from `inside` at which F is not NaN; a finite end itself.
+    fn last_number(&self, inside: f64, end: f64) -> f64 {
+        let is_nan = |rank| (self.cdf)(from_order(rank)).is_nan();
+        let (mut number, mut nan) = (order(inside), order(end.clamp(-f64::MAX, f64::MAX)));
+        if end.is_finite() || !is_nan(nan) {
+            return from_order(nan);
+        }
+        while number.abs_diff(nan) > 1 {
+            let middle = number.midpoint(nan);
+            *(if is_nan(middle) { &mut nan } else { &mut number }) = middle;
+        }
+        from_order(number)
+    }
+}
+
+/// Where to look for samples towards an infinite end of the support: up to x, the last number there, if all the mass
+/// is on this side of it but for rounding, and else up to the end.
+fn infinite_end(end: f64, (x, f): (f64, f64), beyond: f64, rise: f64) -> Result<f64> {
+    let not_a_cdf = |reason| Err(Error::NotACdf { reason });
+    if beyond <= ROUNDING {
+        Ok(x)
+    } else if x.abs() < f64::MAX {
+        not_a_cdf(format!("beyond F({x:?}) = {f} it is NaN"))
+    } else if rise <= ROUNDING {
+        not_a_cdf(format!("towards {end} it stays at {f}, which leaves mass at infinity"))
+    } else {
+        Ok(end)
     }
 }
 

@@ -367,6 +367,112 @@ fn rounding_is_forgiven_to_one_part_in_two_to_the_forty() {
     }
 }
 
+const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+type Law = (fn(f64) -> f64, [f64; 2]);
+
+/// Laws as one writes them down, which are ∞·0 or ∞/∞ at the largest numbers: Gamma of shape 2 and 3, the logistic one
+/// twice, and a Gamma to the left.
+const NAN_FAR_OUT: [Law; 5] = [
+    (|x| 1.0 - (1.0 + x) * (-x).exp(), [0.0, f64::INFINITY]),
+    (|x| 1.0 - (1.0 + x + 0.5 * x * x) * (-x).exp(), [0.0, f64::INFINITY]),
+    (|x| x.exp() / (1.0 + x.exp()), EVERYWHERE),
+    (|x| 0.5 + 0.5 * (0.5 * x).sinh() / (0.5 * x).cosh(), EVERYWHERE),
+    (|x| (1.0 - x + 0.5 * x * x) * x.exp(), [f64::NEG_INFINITY, 0.0]),
+];
+
+/// What is asked for at the ends of the unit interval, too.
+fn probabilities() -> impl Iterator<Item = f64> {
+    PROBABILITIES.into_iter().chain([0.5f64.powi(54), 1.0 - 0.5f64.powi(53), 1.0])
+}
+
+#[test]
+fn a_cdf_is_not_asked_at_infinity_nor_where_it_is_nan_beyond_the_last_sample() {
+    for (i, (cdf, support)) in NAN_FAR_OUT.into_iter().enumerate() {
+        let asked = |x: f64| {
+            assert!(x.is_finite(), "law {i} is asked at {x}");
+            cdf(x)
+        };
+        let inversion = Inversion::new(asked, support).unwrap();
+        for u in probabilities() {
+            let x = inversion.inverse_cdf(u).unwrap();
+            assert!(is_generalised_inverse(cdf, x, u), "law {i}: F⁻({u}) = {x}, F there is {}", cdf(x));
+        }
+        assert_eq!(inversion.inverse_cdf(0.0).unwrap(), support[0]);
+        let found = estimate(&from_fn(|rng| inversion.sample(rng)), Budget::Draws(1000), 1).unwrap();
+        assert!(found.mean().is_finite());
+    }
+    // median of (1 + x) e^(−x) = 1/2, by bisection in arbitrary precision
+    let (cdf, support) = NAN_FAR_OUT[0];
+    let median = Inversion::new(cdf, support).unwrap().inverse_cdf(0.5).unwrap();
+    assert_relative_eq!(median, 1.678_346_990_016_660_7, epsilon = 0.0, max_relative = 1e-15);
+}
+
+/// A tail so heavy that it leaves f64: its far quantiles are +∞, the nearer ones what they are.
+#[test]
+fn the_heaviest_tails_end_at_infinity() {
+    // NaN at both infinities
+    let right = |x: f64| 1.0 - (x / x) / x.ln();
+    let inversion = Inversion::new(right, [std::f64::consts::E, f64::INFINITY]).unwrap();
+    // F⁻(0.9) = e¹⁰, to the slope's share of F's rounding
+    assert_relative_eq!(inversion.inverse_cdf(0.9).unwrap(), 10f64.exp(), max_relative = 1e-13);
+    for u in [0.9999, 1.0] {
+        assert_eq!(inversion.inverse_cdf(u).unwrap(), f64::INFINITY);
+    }
+    let left = |x: f64| (x / x) / (-x).ln();
+    let inversion = Inversion::new(left, [f64::NEG_INFINITY, -std::f64::consts::E]).unwrap();
+    assert_relative_eq!(inversion.inverse_cdf(0.1).unwrap(), -10f64.exp(), max_relative = 1e-13);
+    assert_eq!(inversion.inverse_cdf(1e-4).unwrap(), -f64::MAX);
+}
+
+#[test]
+fn constant_cdfs_are_atoms_or_refused() {
+    // an atom at the lower end, all of the mass or half of it
+    for (share, support) in [(1.0, [-3.0, 10.0]), (1.0, [-3.0, f64::INFINITY]), (0.5, [-3.0, 10.0])] {
+        let inversion = Inversion::new(|_| share, support).unwrap();
+        for u in probabilities().filter(|u| *u <= share) {
+            assert_eq!(inversion.inverse_cdf(u).unwrap(), -3.0, "{share} {u}");
+        }
+    }
+    let never = |share: f64| Inversion::new(move |_| share, [-3.0, 10.0])?.inverse_cdf(0.7);
+    for share in [0.0, 0.5] {
+        let error = never(share).unwrap_err().to_string();
+        assert!(
+            error.contains("at the support's upper end 10.0") && error.contains("never reaches 0.7"),
+            "{error}"
+        );
+    }
+    let refused = |cdf: &dyn Fn(f64) -> f64, support, reason: &str| {
+        let error = Inversion::new(cdf, support).map(|_| ()).unwrap_err().to_string();
+        assert!(error.starts_with("the function given is not a cdf: ") && error.contains(reason), "{error}");
+    };
+    for (share, support, end) in [
+        (0.0, [-3.0, f64::INFINITY], "towards inf it stays at 0"),
+        (0.5, [-3.0, f64::INFINITY], "towards inf it stays at 0.5"),
+        (0.5, [f64::NEG_INFINITY, 10.0], "towards -inf it stays at 0.5"),
+        (0.5, EVERYWHERE, "towards -inf it stays at 0.5"),
+        (1.0, EVERYWHERE, "towards -inf it stays at 1"),
+        (0.0, EVERYWHERE, "towards inf it stays at 0"),
+    ] {
+        refused(&|_| share, support, end);
+    }
+    // not constant, but with mass at infinity
+    refused(&|x| 0.4 * x.clamp(0.0, 1.0), [0.0, f64::INFINITY], "towards inf it stays at 0.4");
+    // NaN elsewhere than beyond the last sample
+    let nan = f64::NAN;
+    refused(&|_| nan, [0.0, 10.0], "F(0.0) is NaN");
+    refused(&|_| nan, [0.0, f64::INFINITY], "F(0.0) is NaN");
+    refused(&|_| nan, EVERYWHERE, "F(0.0) is NaN");
+    refused(&|x| if x == 0.0 { nan } else { 1.0 }, [0.0, f64::INFINITY], "F(0.0) is NaN");
+    refused(&|x| if x == 10.0 { nan } else { 0.1 * x }, [0.0, 10.0], "F(10.0) is NaN");
+    refused(&|x| if x > 3.0 { nan } else { 0.1 * x }, [0.0, f64::INFINITY], "beyond F(3.0) = 0.3");
+    refused(
+        &|x| if x < -3.0 { nan } else { 1.0 + 0.1 * x },
+        [f64::NEG_INFINITY, 0.0],
+        "beyond F(-3.0) = 0.7",
+    );
+}
+
 /// Samples by bisection have the cdf: n = 2·10⁵ see D = 0.0085 (α = 1e-12), for the discrete law too.
 #[test]
 fn samples_of_any_cdf_have_that_cdf() {
@@ -539,6 +645,19 @@ proptest! {
             weight * h * exponential.pdf(from + h * (f64::from(2 * piece + 1) + node))
         })).sum();
         prop_assert!((exponential.cdf(to) - exponential.cdf(from) - integral).abs() <= 1e-12);
+    }
+
+    /// At every place and scale at which they are written down.
+    #[test]
+    fn laws_that_are_nan_far_out_are_inverted(
+        i in 0..NAN_FAR_OUT.len(), shift in -3.0..3.0f64, power in -100..100, u in 0.0..=1.0f64,
+    ) {
+        let ((cdf, support), scale) = (NAN_FAR_OUT[i], 2f64.powi(power));
+        let cdf = |x: f64| cdf((x - shift * scale) / scale);
+        let [low, high] = support.map(|end| (end + shift) * scale);
+        let x = Inversion::new(cdf, [low, high]).unwrap().inverse_cdf(u).unwrap();
+        prop_assert!(x == low || is_generalised_inverse(cdf, x, u), "{x}");
+        prop_assert!(if u > 0.0 { x.is_finite() } else { x == low }, "{x}");
     }
 
     /// Any weights, divided by their sum and summed again.
