@@ -242,6 +242,8 @@ impl<F: Fn(f64) -> f64> Inversion<F> {
     pub fn new(cdf: F, [low, high]: [f64; 2]) -> Result<Self> {
         require("the support's lower end", low, low < f64::INFINITY, "a number below +∞")?;
         require("the support's upper end", high, high > low, "above the lower end")?;
+        // −0 is 0, as everywhere in the order of bits
+        let low = low + 0.0;
         let mut inversion = Self { cdf, low, within: [low, high] };
         let [first, last] = inversion.within.map(|end| inversion.last_number(0f64.clamp(low, high), end));
         let mut looks = [(first, 0.0); 65];

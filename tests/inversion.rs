@@ -425,6 +425,22 @@ fn the_heaviest_tails_end_at_infinity() {
     assert_eq!(inversion.inverse_cdf(1e-4).unwrap(), -f64::MAX);
 }
 
+/// A jump at 0 is one at 0 and not at −0, which prints as "-0", whichever of the two the support ends at.
+#[test]
+fn zero_has_no_sign() {
+    let jump = |x: f64| f64::from(u8::from(x >= 0.0));
+    let line = |x: f64| 0.1 * x.max(0.0);
+    for support in
+        [[-5.0, 5.0], [-0.0, 5.0], [0.0, 5.0], [-5.0, -0.0], [-5.0, 0.0], [-0.0, f64::INFINITY], EVERYWHERE]
+    {
+        let inversion = Inversion::new(jump, support).unwrap();
+        for u in probabilities() {
+            assert_eq!(inversion.inverse_cdf(u).unwrap().to_bits(), 0, "{support:?} {u}");
+        }
+    }
+    assert_eq!(Inversion::new(line, [-0.0, 10.0]).unwrap().inverse_cdf(0.0).unwrap().to_bits(), 0);
+}
+
 #[test]
 fn constant_cdfs_are_atoms_or_refused() {
     // an atom at the lower end, all of the mass or half of it
