@@ -37,7 +37,7 @@ pub(crate) fn student_t(freedom: f64, level: f64) -> f64 {
     }
     let mut t = (freedom * (z * z / freedom).exp_m1()).sqrt();
     // Newton's steps for ln P or ln Q over ln t: both are concave, so that none goes astray; 4 are enough
-    for _ in 0..4 {
+    for _ in 0..5 {
         let (x, y) = (freedom / (freedom + t * t), t * t / (freedom + t * t));
         let density = 2.0 * y.sqrt() * x.powf(half) / beta;
         let (found, slope) =

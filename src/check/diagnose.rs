@@ -297,8 +297,8 @@ impl fmt::Display for Diagnosis {
 mod tests {
     use super::*;
 
-    /// Quantiles at both probabilities for 1 to 20 probes, by mpmath. statrs' P(χ² > x) is right to 3e-13, and x
-    /// to 5e-14: its relative error is P's by x times the hazard rate, which is 7 or more here.
+    /// Quantiles at both probabilities for 1 to 20 probes, by mpmath. statrs has P(χ² > x) to 3e-13, so x to
+    /// 5e-14: its relative error is P's by x times the hazard rate, which is 7 or more here.
     #[test]
     fn the_region_has_its_probability() {
         let edges = [
