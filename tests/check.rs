@@ -411,6 +411,28 @@ fn a_comparison_of_laws_takes_the_draws_that_its_deviation_needs() {
     }
 }
 
+/// Sums of weights 1/n, which end an ulp or a few from 1; with a thousandth more they are no cdf.
+#[test]
+fn a_cdf_may_leave_the_unit_interval_by_rounding() {
+    let mut beyond = 0;
+    for n in 2..100 {
+        let mut sums = vec![1.0 / n as f64; n];
+        for i in 1..n {
+            sums[i] += sums[i - 1];
+        }
+        beyond += i32::from(sums[n - 1] > 1.0);
+        let cdf = |x: f64| if x < 1.0 { -1e-16 } else { sums[(x as usize).min(n) - 1] };
+        let die = from_fn(|rng| (n as f64 * rng.uniform()).floor() + 1.0);
+        let found = distributed_as(&die, cdf, 0.1, 1e-12, common::seed(113)).unwrap();
+        assert!(found.agrees, "{n}: {found}");
+        for cdf in [&|x: f64| 1.001 * cdf(x), &|x: f64| cdf(x) - 0.001] as [&dyn Fn(f64) -> f64; 2] {
+            let error = distributed_as(&die, cdf, 0.1, 1e-12, 1).unwrap_err().to_string();
+            assert!(error.starts_with("the claimed cdf must be in [0, 1], not "), "{error}");
+        }
+    }
+    assert!(beyond > 0);
+}
+
 #[test]
 fn laws_with_jumps_are_compared_at_both_sides_of_each() {
     let roulette = Roulette::new(0.83).unwrap();

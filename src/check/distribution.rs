@@ -7,6 +7,7 @@ use rand::distr::Distribution;
 
 use crate::error::{Result, require};
 use crate::hemisphere::{Direction, Hemisphere};
+use crate::inversion::is_probability;
 use crate::run::Estimator;
 use crate::stream::Stream;
 
@@ -51,7 +52,8 @@ pub const CELLS: usize = 8;
 /// that a deviation of `deviation` in the cdf is seen with probability 1 − 1e-6: n = (√(ln(2/α)/2) + √(ln(1e6)/2))²/D², 41 / D² at α = 1e-12.
 ///
 /// # Errors
-/// If the deviation is not in (0, 1], α not in (0, 1), a draw is NaN, or the claimed cdf leaves \[0, 1\].
+/// If the deviation is not in (0, 1], α not in (0, 1), a draw is NaN, or the claimed cdf leaves \[0, 1\] by more
+/// than 2⁻⁴⁰.
 ///
 /// ```
 /// use unbiased::{check, inversion::Exponential};
@@ -166,7 +168,7 @@ fn largest_deviation(samples: &mut [f64], cdf: impl Fn(f64) -> f64) -> Result<(f
     let n = samples.len() as f64;
     let probability = |x: f64| {
         let f = cdf(x);
-        require("the claimed cdf", f, (0.0..=1.0).contains(&f), "in [0, 1]")
+        require("the claimed cdf", f, is_probability(f), "in [0, 1]")
     };
     let mut worst = (0.0, f64::NAN);
     let mut below = 0;
