@@ -73,6 +73,19 @@ impl Stream {
         Self { source, random_numbers: 0, evaluations: 0 }
     }
 
+    /// Starts over with a script of these steps k of the grid k·2⁻⁵³.
+    #[inline]
+    pub(crate) fn rewind(&mut self, steps: &[u64]) {
+        let words = steps.iter().map(|step| step << 11);
+        match &mut self.source {
+            Source::Script(script) if script.len() == steps.len() => {
+                script.iter_mut().zip(words).for_each(|(word, new)| *word = new);
+            }
+            source => *source = Source::Script(words.collect()),
+        }
+        (self.random_numbers, self.evaluations) = (0, 0);
+    }
+
     /// A uniform number on the grid k·2⁻⁵³ in [0, 1): never 1, and 0 with probability 2⁻⁵³.
     ///
     /// 1 − u is exact on this grid and lies in (0, 1].

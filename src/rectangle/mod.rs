@@ -22,6 +22,7 @@ mod replicate;
 
 pub use genz::{Family, Genz};
 pub use integrand::Integrand;
+pub(crate) use replicate::scrambled;
 pub use replicate::{AllPairs, Jittered, Sobol};
 
 use rand::Rng;

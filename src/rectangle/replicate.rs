@@ -188,7 +188,7 @@ impl<F: Fn(f64, f64) -> f64 + Sync> Estimator for Sobol<F> {
 /// Over all scrambles the first 16 digits take each value equally often (`owen_scramble_rev` adds the
 /// scramble's low half and then only permutes); the further ones of `sobol_burley`'s 23 do not quite.
 #[inline]
-fn scrambled(sobol_rev: u32, scramble: u32, digits: u32, random: u64) -> f64 {
+pub(crate) fn scrambled(sobol_rev: u32, scramble: u32, digits: u32, random: u64) -> f64 {
     const STEP: f64 = 1.0 / (1u64 << 53) as f64;
     let sobol = owen_scramble_rev(sobol_rev, scramble).reverse_bits();
     let below = u64::MAX >> digits;

@@ -5,7 +5,8 @@ use std::sync::OnceLock;
 
 use super::probe::Setup;
 use super::{Attempt, Probe, Topic};
-use crate::check::exactly::{Exact, exactly};
+use crate::check::exactly::{Exact, moments};
+use crate::error::Result;
 
 /// A classic mistake: what it is, how to mend it, and the estimator that commits it.
 #[derive(Debug)]
@@ -114,7 +115,7 @@ impl Mistake {
         }
         let mean = |probe: &Probe| match &self.expected {
             Expected::Closed(expected) => expected(&probe.setup),
-            Expected::Quadrature => self.exactly(probe).map_or(f64::NAN, |exact| exact.mean),
+            Expected::Quadrature => self.moments(probe).map_or(f64::NAN, |(mean, _)| mean),
         };
         let probes = self.topic().probes();
         let known = probes.iter().position(|other| other == probe);
@@ -132,7 +133,7 @@ impl Mistake {
 
     /// The std deviation of its draws on a probe by quadrature, where a draw takes at most 3 random numbers.
     ///
-    /// Mistakes with equal means are told apart by it. Where the variance is infinite a large number comes out.
+    /// Mistakes with equal means are told apart by it. None where the variance is infinite.
     pub fn spread(&self, probe: &Probe) -> Option<f64> {
         let spread = |probe: &Probe| self.exactly(probe).map(|exact| exact.variance.sqrt());
         let probes = self.topic().probes();
@@ -170,12 +171,21 @@ impl Mistake {
         })
     }
 
-    /// The mean and variance of its draws on a probe by quadrature of the wrong estimator itself, where a draw takes at most 3 random numbers.
+    /// The mean and variance of its draws on a probe by quadrature of the wrong estimator itself, where a draw
+    /// takes at most 3 random numbers and both can be known.
     pub fn exactly(&self, probe: &Probe) -> Option<Exact> {
+        let (mean, variance) = self.moments(probe)?;
+        Some(Exact { mean, variance: variance.ok()? })
+    }
+
+    fn moments(&self, probe: &Probe) -> Option<(f64, Result<f64>)> {
         let estimator = self.wrong.at(probe).ok()?;
-        exactly(&estimator, self.random_numbers()?).ok()
+        moments(&estimator, self.random_numbers()?, LOOKS).ok()
     }
 }
+
+/// Looks of the quadrature's second rule: what jumps in the gallery is known, and is no narrower than this.
+const LOOKS: f64 = 4096.0;
 
 /// Ratios closer than this are the same but for rounding.
 const SAME: f64 = 1e-8;
