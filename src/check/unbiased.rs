@@ -214,40 +214,41 @@ impl Unbiased {
         let (mut above, mut below) = (false, false);
         let mut estimate = Estimate::new();
         // slow draws that are far off are few: the first looks come soon
-        let (mut next, mut batch, mut size) = (0, 1, FIRST_LEAF);
+        let (mut next, mut batch, mut size) = (0, 1, FIRST_BLOCK);
         loop {
-            let leaves: Vec<_> = (next..next + batch)
+            let blocks: Vec<_> = (next..next + batch)
                 .into_par_iter()
-                .map(|block| self.leaf(estimator, &bettors, block, size))
+                .map(|block| self.leaves(estimator, &bettors, block, size))
                 .collect();
-            for leaf in leaves {
-                let leaf = leaf?;
-                estimate.merge(&leaf.estimate);
-                for (wealth, growth) in wealths.iter_mut().zip(&leaf.growths) {
-                    wealth.grow(growth);
-                }
-                let [up, down, up_low, down_high] = wealths.each_ref().map(Wealth::log_mean);
-                let two_sided = up.max(down) + (0.5 + 0.5 * (-(up - down).abs()).exp()).ln();
-                each(Look {
-                    draws: estimate.draws(),
-                    against_truth: two_sided,
-                    against_too_low: up_low,
-                    against_too_high: down_high,
-                });
-                above |= up_low >= -self.beta.ln();
-                below |= self.high.is_finite() && down_high >= -self.beta.ln();
-                if two_sided >= -self.alpha.ln() {
-                    return Ok(self.report(Verdict::Biased, estimate));
-                }
-                if above && below {
-                    return Ok(self.report(Verdict::Unbiased, estimate));
+            for leaves in blocks {
+                for leaf in leaves? {
+                    estimate.merge(&leaf.estimate);
+                    for (wealth, growth) in wealths.iter_mut().zip(&leaf.growths) {
+                        wealth.grow(growth);
+                    }
+                    let [up, down, up_low, down_high] = wealths.each_ref().map(Wealth::log_mean);
+                    let two_sided = up.max(down) + (0.5 + 0.5 * (-(up - down).abs()).exp()).ln();
+                    each(Look {
+                        draws: estimate.draws(),
+                        against_truth: two_sided,
+                        against_too_low: up_low,
+                        against_too_high: down_high,
+                    });
+                    above |= up_low >= -self.beta.ln();
+                    below |= self.high.is_finite() && down_high >= -self.beta.ln();
+                    if two_sided >= -self.alpha.ln() {
+                        return Ok(self.report(Verdict::Biased, estimate));
+                    }
+                    if above && below {
+                        return Ok(self.report(Verdict::Unbiased, estimate));
+                    }
                 }
             }
             if estimate.draws() >= self.patience(&estimate) {
                 return Ok(self.report(Verdict::Undecided, estimate));
             }
             next += batch;
-            if size < LEAF {
+            if size < LARGEST_BLOCK {
                 size *= 2;
             } else {
                 batch = (2 * batch).min(MOST_BLOCKS);
@@ -278,42 +279,45 @@ impl Unbiased {
         ]
     }
 
-    /// One block of so many draws.
-    fn leaf(
+    /// One block of so many draws, in leaves of up to [`LEAF`].
+    fn leaves(
         &self,
         estimator: &(impl Estimator + ?Sized),
         [up, down, up_low, down_high]: &[Bets; 4],
         block: u64,
-        size: usize,
-    ) -> Result<Leaf> {
+        size: u64,
+    ) -> Result<Vec<Leaf>> {
         let Self { seed, low, high, .. } = *self;
-        let mut draws = Vec::with_capacity(size);
-        walk_block(estimator, seed, block, size as u64, |slice| {
-            draws.extend_from_slice(slice);
-            Ok(())
-        })?;
         // rounding may take a draw past an end, by a part of the range or of the end itself
         let reach = if high.is_finite() { high - low } else { self.truth - low };
         let slack = |end: f64| 1e-12 * reach + 4.0 * f64::EPSILON * end.abs();
         let inside = low - slack(low)..=if high.is_finite() { high + slack(high) } else { high };
-        if let Some(draw) = draws.iter().position(|draw| !inside.contains(draw)) {
-            let value = draws[draw];
-            return Err(Error::OutOfRange { seed, block, draw: draw as u64, value, range: [low, high] });
-        }
         let from_low = |draw: f64| (draw - low).max(0.0);
         let from_high = |draw: f64| (high - draw).max(0.0);
-        let downwards = |bets: &Bets| {
-            if high.is_finite() { bets.growth(&draws, from_high) } else { Growth::default() }
-        };
-        Ok(Leaf {
-            estimate: Estimate::from_draws(&draws),
-            growths: [
-                up.growth(&draws, from_low),
-                downwards(down),
-                up_low.growth(&draws, from_low),
-                downwards(down_high),
-            ],
-        })
+        let (mut leaves, mut done) = (Vec::new(), 0);
+        walk_block(estimator, seed, block, size, |slice| {
+            for draws in slice.chunks(LEAF) {
+                if let Some(draw) = draws.iter().position(|draw| !inside.contains(draw)) {
+                    let (value, draw) = (draws[draw], done + draw as u64);
+                    return Err(Error::OutOfRange { seed, block, draw, value, range: [low, high] });
+                }
+                let downwards = |bets: &Bets| {
+                    if high.is_finite() { bets.growth(draws, from_high) } else { Growth::default() }
+                };
+                leaves.push(Leaf {
+                    estimate: Estimate::from_draws(draws),
+                    growths: [
+                        up.growth(draws, from_low),
+                        downwards(down),
+                        up_low.growth(draws, from_low),
+                        downwards(down_high),
+                    ],
+                });
+                done += draws.len() as u64;
+            }
+            Ok(())
+        })?;
+        Ok(leaves)
     }
 
     /// The draws after which nothing more is expected: twice what a right estimator of this variance needs but for one run in a million.
@@ -331,12 +335,15 @@ impl Unbiased {
     }
 }
 
-/// Draws between two looks at the wealth, at most, and before the first.
+/// Draws between two looks at the wealth, at most.
 const LEAF: usize = 256;
-const FIRST_LEAF: usize = 16;
+
+/// Draws in a block: in the first one, and at most.
+const FIRST_BLOCK: u64 = 16;
+const LARGEST_BLOCK: u64 = 1 << 14;
 
 /// Blocks in flight at a time.
-const MOST_BLOCKS: u64 = 4096;
+const MOST_BLOCKS: u64 = 64;
 
 /// What some draws did to the estimate and to each bettor's wealth.
 struct Leaf {
