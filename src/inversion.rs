@@ -338,7 +338,7 @@ fn infinite_end(end: f64, (x, f): (f64, f64), beyond: f64, rise: f64) -> Result<
         Ok(x)
     } else if x.abs() < f64::MAX {
         not_a_cdf(format!("beyond F({x:?}) = {f} it is NaN"))
-    } else if rise <= ROUNDING {
+    } else if rise <= ROUNDING * (1.0 - beyond) {
         not_a_cdf(format!("towards {end} it stays at {f}, which leaves mass at infinity"))
     } else {
         Ok(end)

@@ -611,6 +611,76 @@ fn a_comparison_of_laws_takes_the_draws_that_its_deviation_needs() {
     }
 }
 
+/// −0 and 0 are one value, and so are all draws that are infinite: whichever way they come, the law is the same.
+#[test]
+fn draws_are_compared_as_numbers() {
+    let place = |found: &check::Agreement| match found.place {
+        check::Place::Value(x) => x,
+        _ => f64::NAN,
+    };
+    // (2u − 1).round() is −1, −0, 0 or 1; its law has jumps at −1, 0 and 1
+    let rounded = from_fn(|rng| (2.0 * rng.uniform() - 1.0).round());
+    let claimed = |x: f64| match x {
+        x if x < -1.0 => 0.0,
+        x if x < 0.0 => 0.25,
+        x if x < 1.0 => 0.75,
+        _ => 1.0,
+    };
+    let found = distributed_as(&rounded, claimed, 0.01, 1e-12, common::seed(114)).unwrap();
+    assert!(found.agrees, "{found}");
+    let shifted = distributed_as(&rounded, |x| claimed(x - 0.1), 0.01, 1e-12, common::seed(114)).unwrap();
+    assert!(!shifted.agrees && place(&shifted) == 0.0, "{shifted}");
+    // an atom at 0 of either sign agrees without any deviation, and the place is a number
+    for zero in [0.0, -0.0] {
+        let found =
+            distributed_as(&from_fn(move |_| zero), |x| if x < 0.0 { 0.0 } else { 1.0 }, 0.1, 1e-12, 1)
+                .unwrap();
+        assert!(found.agrees && found.strain == 0.0 && place(&found).to_bits() == 0, "{found:?}");
+    }
+    // a quarter of the mass at each infinity, and a cdf that says so, or is NaN at +∞
+    let far = from_fn(|rng| match rng.uniform() {
+        u if u < 0.25 => f64::NEG_INFINITY,
+        u if u < 0.75 => rng.uniform(),
+        _ => f64::INFINITY,
+    });
+    let claimed = |x: f64| 0.25 + 0.5 * x.clamp(0.0, 1.0) + 0.0 * x.max(0.0);
+    let found = distributed_as(&far, claimed, 0.01, 1e-12, common::seed(115)).unwrap();
+    assert!(found.agrees, "{found}");
+    // without mass at infinity draws there are refused, though the cdf be NaN at −∞
+    let never = |x: f64| x.clamp(0.0, 1.0) + 0.0 * x;
+    let found = distributed_as(&far, never, 0.01, 1e-12, common::seed(115)).unwrap();
+    assert!(!found.agrees, "{found}");
+    // all draws at +∞, all mass there
+    let found = distributed_as(&from_fn(|_| f64::INFINITY), |_| 0.0, 0.1, 1e-12, 1).unwrap();
+    assert!(found.agrees && found.strain == 0.0 && place(&found) == f64::INFINITY, "{found:?}");
+    let found = distributed_as(&from_fn(|_| f64::NEG_INFINITY), |_| 1.0, 0.1, 1e-12, 1).unwrap();
+    assert!(found.agrees && found.strain == 0.0 && place(&found) == f64::NEG_INFINITY, "{found:?}");
+}
+
+proptest! {
+    #![proptest_config(common::config(200))]
+
+    /// Of any discrete law, a sampler that signs its zeros as it likes agrees, and one with 0.2 of the mass elsewhere does
+    /// not: 0.1 is seen with probability 1 − 1e-6.
+    #[test]
+    fn any_law_on_integers_agrees_with_its_draws(weights in prop::collection::vec(0.1..1.0f64, 1..12), least in -12i32..1) {
+        let total: f64 = weights.iter().sum();
+        let value = |k: usize| f64::from(least) + k as f64;
+        let sampler = from_fn(|rng| {
+            let (mut left, sign) = (rng.uniform() * total, if rng.uniform() < 0.5 { -1.0 } else { 1.0 });
+            let k = weights.iter().take_while(|w| { left -= **w; left >= 0.0 }).count();
+            let x = value(k.min(weights.len() - 1));
+            if x == 0.0 { 0.0 * sign } else { x }
+        });
+        let cdf = |x: f64| (0..weights.len()).filter(|k| value(*k) <= x).map(|k| weights[k] / total).sum::<f64>();
+        let found = distributed_as(&sampler, cdf, 0.1, 1e-12, common::seed(116)).unwrap();
+        prop_assert!(found.agrees, "{}", found);
+        let other = |x: f64| 0.8 * cdf(x) + if x < 20.0 { 0.0 } else { 0.2 };
+        let found = distributed_as(&sampler, other, 0.1, 1e-12, common::seed(116)).unwrap();
+        prop_assert!(!found.agrees, "{}", found);
+    }
+}
+
 /// Sums of weights 1/n, which end an ulp or a few from 1; with a thousandth more they are no cdf.
 #[test]
 fn a_cdf_may_leave_the_unit_interval_by_rounding() {

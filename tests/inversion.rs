@@ -419,6 +419,11 @@ fn the_heaviest_tails_end_at_infinity() {
     for u in [0.9999, 1.0] {
         assert_eq!(inversion.inverse_cdf(u).unwrap(), f64::INFINITY);
     }
+    // nearly all of it out there: F(1.8e308) = 8.9e-16
+    let slow = exponential(5e-324);
+    let inversion = Inversion::new(|x| slow.cdf(x), [0.0, f64::INFINITY]).unwrap();
+    assert_eq!(inversion.inverse_cdf(0.5).unwrap(), f64::INFINITY);
+    assert_relative_eq!(inversion.inverse_cdf(1e-16).unwrap(), 1e-16 / 5e-324, max_relative = 1e-15);
     let left = |x: f64| (x / x) / (-x).ln();
     let inversion = Inversion::new(left, [f64::NEG_INFINITY, -std::f64::consts::E]).unwrap();
     assert_relative_eq!(inversion.inverse_cdf(0.1).unwrap(), -10f64.exp(), max_relative = 1e-13);

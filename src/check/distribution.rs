@@ -50,6 +50,8 @@ pub const CELLS: usize = 8;
 /// The empirical cdf of n draws stays within √(ln(2/α)/2n) of the true one, everywhere at once, with probability at least 1 − α,
 /// whatever n and whatever the distribution, discrete ones included (Dvoretzky, Kiefer & Wolfowitz 1956; Massart 1990). The number of draws is taken so
 /// that a deviation of `deviation` in the cdf is seen with probability 1 − 1e-6: n = (√(ln(2/α)/2) + √(ln(1e6)/2))²/D², 41 / D² at α = 1e-12.
+/// Draws may be infinite: then the claimed cdf's value at −∞ is its mass there, and what it lacks of 1 at the largest
+/// numbers is that at +∞.
 ///
 /// # Errors
 /// If the deviation is not in (0, 1], α not in (0, 1), a draw is NaN, or the claimed cdf leaves \[0, 1\] by more
@@ -161,22 +163,27 @@ fn band(draws: usize, alpha: f64) -> f64 {
     ((2.0 / alpha).ln() / (2.0 * draws as f64)).sqrt()
 }
 
-/// sup |Fₙ − F| and where it is. Ties are taken together, and F just below a value stands for its left limit, so that laws with jumps are compared
-/// at both sides of each.
+/// sup |Fₙ − F| and where it is. Equal draws are taken together, −0 and 0, too, and F just below a value stands for its
+/// left limit, so that laws with jumps are compared at both sides of each. Nothing is below −∞, and all is at most +∞:
+/// there F is not asked, and at −∞, where it is the mass of −∞, a NaN is none.
 fn largest_deviation(samples: &mut [f64], cdf: impl Fn(f64) -> f64) -> Result<(f64, f64)> {
     samples.sort_unstable_by(f64::total_cmp);
     let n = samples.len() as f64;
     let probability = |x: f64| {
-        let f = cdf(x);
+        let f = if x == f64::INFINITY { 1.0 } else { cdf(x) };
+        let f = if x == f64::NEG_INFINITY && f.is_nan() { 0.0 } else { f };
         require("the claimed cdf", f, is_probability(f), "in [0, 1]")
     };
-    let mut worst = (0.0, f64::NAN);
+    // the first draw, where none deviates
+    let mut worst = (f64::NEG_INFINITY, f64::NAN);
     let mut below = 0;
-    for ties in samples.chunk_by(|a, b| a.total_cmp(b).is_eq()) {
+    for ties in samples.chunk_by(|a, b| a == b) {
         let [x, ..] = *ties else { continue };
+        let x = x + 0.0; // −0 is 0
         require("a draw", x, !x.is_nan(), "a number")?;
         let up_to = below + ties.len();
-        let left = (below as f64 / n - probability(x.next_down())?).abs();
+        let below_x = if x == f64::NEG_INFINITY { 0.0 } else { probability(x.next_down())? };
+        let left = (below as f64 / n - below_x).abs();
         let right = (up_to as f64 / n - probability(x)?).abs();
         let here = left.max(right);
         if here > worst.0 {
