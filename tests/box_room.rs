@@ -783,6 +783,132 @@ fn normals_have_a_direction_and_points_are_finite() {
     }
 }
 
+/// By tests/data/closed_forms.py's formula in 2400 bits: the sky above a plane, seen aslant, of which the horizon takes 8 %.
+#[test]
+fn the_largest_polygons_are_half_spaces() {
+    let tilted = DVec3::new(0.3, -0.5, 0.9);
+    for (half, exact) in
+        [(1e9, 0.919_627_163_395_042_26), (1e16, 0.919_627_163_708_141_17), (1e300, 0.919_627_163_708_141_2)]
+    {
+        let mut square = rectangle([-half, half], [-half, half], 1.0);
+        for _ in 0..4 {
+            let given = form_factor(&square, DVec3::ZERO, tilted);
+            assert!((given - exact).abs() <= 1e-15, "{half:e}: {given}");
+            square.rotate_left(1);
+        }
+        square.reverse();
+        assert!((form_factor(&square, DVec3::ZERO, tilted) - exact).abs() <= 1e-15);
+    }
+    // the other side of the plane is seen only where the horizon lets it
+    for (normal, z) in [(tilted, -1.0), (-tilted, 1.0)] {
+        let given = form_factor(&rectangle([-1e16, 1e16], [-1e16, 1e16], z), DVec3::ZERO, normal);
+        assert!((given + 0.919_627_163_708_141_2 - 1.0).abs() <= 1e-15, "{given}");
+    }
+}
+
+proptest! {
+    #![proptest_config(common::config(2_000))]
+
+    /// P has no unit of length: a power of two changes no bit.
+    #[test]
+    fn form_factors_know_no_unit_of_length(
+        corners in prop::collection::vec(prop::array::uniform3(-1.0..1.0), 3..6), sizes in prop::collection::vec(-40..40, 6),
+        point in prop::array::uniform3(-1.0..1.0), n in prop::array::uniform3(-1.0..1.0), power in -800..800,
+    ) {
+        let corners = corners.into_iter().zip(sizes).map(|(c, size)| DVec3::from_array(c) * 2f64.powi(size));
+        let (corners, point): (Vec<DVec3>, _) = (corners.collect(), DVec3::from_array(point));
+        let (n, unit) = (DVec3::from_array(n), 2f64.powi(power));
+        let scaled: Vec<DVec3> = corners.iter().map(|c| *c * unit).collect();
+        prop_assert_eq!(form_factor(&corners, point, n), form_factor(&scaled, point * unit, n));
+    }
+
+    /// A rectangle of any size, cut into four anywhere, at any tilt: each of five values is off by 1e-15 at most.
+    #[test]
+    fn parts_make_up_the_whole(
+        logs in prop::array::uniform2(-16.0..300.0), offset in prop::array::uniform2(-1.5..1.5),
+        cut in prop::array::uniform2(0.0..1.0), n in prop::array::uniform3(-1.0..1.0), turn in 0..3usize,
+    ) {
+        let ends = [0, 1].map(|axis| {
+            let size = 10f64.powf(logs[axis]);
+            [size * (offset[axis] - 1.0), size * (offset[axis] + 1.0)]
+        });
+        let [x, y] = [0, 1].map(|axis| {
+            let [low, high] = ends[axis];
+            [low, low + cut[axis] * (high - low), high]
+        });
+        let p = |x: [f64; 2], y: [f64; 2]| {
+            let corners = rectangle(x, y, 1.0).map(|c| match turn {
+                0 => c,
+                1 => DVec3::new(c.z, c.x, c.y),
+                _ => DVec3::new(c.y, c.z, c.x),
+            });
+            form_factor(&corners, DVec3::ZERO, DVec3::from_array(n))
+        };
+        let whole = p([x[0], x[2]], [y[0], y[2]]);
+        let halves = p([x[0], x[1]], [y[0], y[2]]) + p([x[1], x[2]], [y[0], y[2]]);
+        let quarters: f64 = [0, 1].iter().flat_map(|i| [0, 1].map(|j| p([x[*i], x[i + 1]], [y[j], y[j + 1]]))).sum();
+        prop_assert!((whole - halves).abs() <= 3e-15, "{whole} {halves}");
+        prop_assert!((whole - quarters).abs() <= 5e-15, "{whole} {quarters}");
+    }
+
+    /// What a triangle around the foot leaves out of the half-space lies within r⁻¹ of the plane's horizon, r the radius of the
+    /// circle in it in units of the distance: a band of the solid angle 2π/r, and so less than 2/r of P, by a factor of two or
+    /// more. Up to 1e12, where the coordinates are rounded by 1e-3 of the distance.
+    #[test]
+    fn large_triangles_are_half_spaces(
+        way in prop::array::uniform3(-1.0..1.0), n in prop::array::uniform3(-1.0..1.0), log in 1.0..12.0f64, turn in 0.0..6.3f64,
+    ) {
+        let [way, n] = [way, n].map(DVec3::from_array);
+        prop_assume!(way.length() > 0.1 && n.length() > 0.1);
+        let (way, r) = (way.normalize(), 10f64.powf(log));
+        let (u, v) = way.any_orthonormal_pair();
+        let at = |i: i32| {
+            let (sin, cos) = (turn + f64::from(i) * 2.0 * PI / 3.0).sin_cos();
+            way + (u * cos + v * sin) * (2.0 * r)
+        };
+        let corners = [at(0), at(1), at(2)];
+        let p = form_factor(&corners, DVec3::ZERO, n);
+        let half_space = 0.5 * (1.0 + n.normalize().dot(way));
+        prop_assert!((p - half_space).abs() <= 2.0 / r, "{p} {half_space}");
+    }
+
+    /// In the plane of a triangle: at a corner, in the middle of an edge, on it, inside or outside, however large and wherever.
+    #[test]
+    fn nothing_is_seen_edge_on(
+        p in prop::array::uniform3(-1i64 << 40..1i64 << 40), u in prop::array::uniform3(-1i64 << 40..1i64 << 40),
+        v in prop::array::uniform3(-1i64 << 40..1i64 << 40), n in prop::array::uniform3(-1.0..1.0),
+        places in prop::array::uniform3(prop::array::uniform2(-3i64..4)), power in -900..900,
+    ) {
+        let corner = |[a, b]: [i64; 2]| {
+            let at = |i: usize| (p[i] + a * u[i] + b * v[i]) as f64 * 2f64.powi(power);
+            DVec3::new(at(0), at(1), at(2))
+        };
+        prop_assert_eq!(form_factor(&places.map(corner), corner([0, 0]), DVec3::from_array(n)), 0.0);
+    }
+
+    /// A hair beside the plane, of triangles of any place and size: one side sees what the other does not.
+    #[test]
+    fn the_plane_is_passed_at_once(
+        p in prop::array::uniform3(-1i64 << 40..1i64 << 40), u in prop::array::uniform3(-1i64 << 40..1i64 << 40),
+        v in prop::array::uniform3(-1i64 << 40..1i64 << 40), n in prop::array::uniform3(-1.0..1.0), axis in 0..3usize,
+    ) {
+        let at = |a: i64, b: i64| DVec3::from_array([0, 1, 2].map(|i| (p[i] + a * u[i] + b * v[i]) as f64));
+        let (corners, n) = ([at(2, 0), at(-1, 2), at(-1, -2)], DVec3::from_array(n));
+        let area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        prop_assume!(area.abs().min_element() > 1e-3 * area.length() && area.length() > 1e20 && n.length() > 0.1);
+        // 2⁻¹² m beside a triangle of 10⁹ km
+        let aside = DVec3::AXES[axis] * 0.5f64.powi(12);
+        let seen = [aside, -aside].map(|aside| form_factor(&corners, at(0, 0) + aside, n));
+        let toward = area.normalize() * -area[axis].signum();
+        let half_space = 0.5 * (1.0 + n.normalize().dot(toward));
+        // the foot is the triangle's centre, a third of its least height from an edge; the band of the test above
+        let [a, b, c] = corners;
+        let longest = (a - b).length().max((b - c).length()).max((c - a).length());
+        let room = 2.0 * aside.length() / (area.length() / longest / 3.0) + 1e-15;
+        prop_assert!((seen[0] - half_space).abs() <= room && (seen[1] - (1.0 - half_space)).abs() <= room, "{seen:?} {half_space}");
+    }
+}
+
 proptest! {
     #![proptest_config(common::config(20_000))]
 

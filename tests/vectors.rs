@@ -14,7 +14,9 @@ mod common;
 use std::collections::BTreeMap;
 
 use common::Stuck;
+use glam::DVec3;
 use rand::distr::Distribution;
+use unbiased::box_room::form_factor;
 use unbiased::hemisphere::{Direction, Hemisphere};
 use unbiased::inversion::Exponential;
 use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
@@ -244,6 +246,16 @@ fn evaluate(row: &Row) -> Result<Found, Error> {
             assert_eq!(along, upwards);
             // a drawn point lies on a grid: where lo + u(hi − lo) cancels it is exact to the last place of the larger of lo and itself
             Within(along, along.abs().max(low.abs()))
+        }
+        "polygon" | "polygon_compact" => {
+            let vector =
+                |name: &str| DVec3::from_array(["x", "y", "z"].map(|axis| x(&format!("{name}{axis}"))));
+            let corners = ["c0", "c1", "c2", "c3"]
+                .map(|name| row.bits.contains_key(&format!("{name}x")).then(|| vector(name)));
+            let corners: Vec<DVec3> = corners.into_iter().flatten().collect();
+            let seen = form_factor(&corners, vector("p"), vector("n"));
+            // to 2 ulp of 2, 9e-16, and where it is seen well to 16 of its own
+            Within(seen, if row.function == "polygon" { 2.0 } else { 8.0 * seen })
         }
         "sum" | "mean" | "sample_variance" => return statistics(row),
         other => panic!("no check of {other}"),

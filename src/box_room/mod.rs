@@ -17,6 +17,7 @@ pub(crate) mod exact;
 mod face;
 mod polygon;
 mod ray;
+mod volume;
 
 pub use face::{Face, Vertex};
 pub use polygon::form_factor;

@@ -4,15 +4,26 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
+use super::volume::volume_sign;
+use crate::extended::two_sum;
+
 /// The part P of the cosine-weighted hemisphere above `point` that a plane polygon fills: P = |Σ Θᵢ Γᵢ·n|/(2π), in \[0, 1\].
 ///
-/// Θᵢ is the angle between the directions vᵢ, vᵢ₊₁ to neighbouring corners and Γᵢ the unit vector of vᵢ × vᵢ₊₁ (Lambert, *Photometria*, 1760; Baum, Rushmeier
-/// & Winget 1989). What lies below the horizon of `normal`, of any length, is cut off. A diffuse surface of albedo ρ reflects ρ L_e P of a light of radiance L_e of this shape
-/// (worksheet 4); one draw that looks for it along a cosine-distributed direction has variance (ρ L_e)² P(1 − P).
+/// Θᵢ is the angle between the directions vᵢ, vᵢ₊₁ to neighbouring corners and Γᵢ the unit vector of vᵢ × vᵢ₊₁
+/// (Lambert, *Photometria*, 1760; Baum, Rushmeier & Winget 1989). What lies below the horizon of `normal`, of any length,
+/// is cut off. A diffuse surface of albedo ρ reflects ρ L_e P of a light of radiance L_e of this shape (worksheet 4);
+/// one draw that looks for it along a cosine-distributed direction has variance (ρ L_e)² P(1 − P).
 ///
-/// The corners follow each other around the polygon, in either sense. P is 0 for fewer than three of them, and where `point` lies in the polygon's plane: it is
-/// seen edge on, from its boundary, too. It is P to a few ulp however small the polygon, and however large, as long as it is not much longer than wide. It is NaN
-/// where it has no meaning: if a coordinate is NaN or infinite, or the normal has no length.
+/// The corners follow each other around the polygon, in either sense. P is 0 for fewer than three of them, and where
+/// `point` lies in the polygon's plane: it is seen edge on, from its boundary, too. It is NaN where it has no meaning: if
+/// a coordinate is NaN or infinite, or the normal has no length.
+///
+/// # Accuracy
+/// P is right to 1e-15, whatever the sizes: an edge of 1e300 m may pass the point at 1 m, and the point be that near to
+/// the polygon's plane. It is right to a few ulp of itself, too, however small the polygon, if that is not much longer than
+/// wide *as seen from the point*: neither a needle, nor nearly edge on, nor only just above the horizon. (Against 2400 bits,
+/// the largest error was 4e-16 in 11,000 polygons of any form, of 1e-16 to 1e300 times the distance, and 9 ε of P in 11,000
+/// triangles not longer than wide, of 1e-150 times the distance or more.)
 ///
 /// ```
 /// use glam::DVec3;
@@ -32,84 +43,221 @@ pub fn form_factor(corners: &[DVec3], point: DVec3, normal: DVec3) -> f64 {
     }
     // a unit vector keeps its bits
     let normal = if normal.length_squared() == 1.0 { normal } else { (normal / steepest).normalize() };
-    let (origin, corners) = above_horizon(corners, point, normal);
-    let Some(own_first) = corners.first().copied() else { return 0.0 };
-    let first = origin + own_first;
-    // the polygon's normal: where the point lies in its plane, P is 0
-    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
-    let area: DVec3 = edges.map(|(a, b)| (*a - own_first).cross(*b - own_first)).sum();
-    if area.dot(first) == 0.0 {
-        return 0.0;
+    let polygon = Polygon::seen_from(point, corners);
+    let side = polygon.side();
+    if side == 0.0 {
+        return 0.0; // the point lies in the plane
     }
-    // Σ Θᵢ Γᵢ = Σ uᵢ × uᵢ₊₁ + Σ (Θᵢ/sin Θᵢ − 1) uᵢ × uᵢ₊₁ for the unit vectors u to the corners. In the first sum u₀ may be taken from every uᵢ, so that
-    // for a small polygon nothing cancels; the second is smaller by Θ².
-    let length = first.length();
-    // each u, and u − u₀
-    let units: Vec<(DVec3, DVec3)> = corners
-        .iter()
-        .map(|corner| {
-            let (way, step) = (origin + *corner, *corner - own_first);
-            let own = way.length();
-            // 1/|vᵢ| − 1/|v₀|, without taking the difference
-            let shorter = -step.dot(way + first) / ((own + length) * own * length);
-            (way / own, step / own + first * shorter)
-        })
-        .collect();
+    let outline = polygon.above_horizon(normal);
+    let Some(first) = outline.first().copied() else { return 0.0 };
+    // Σ Θᵢ Γᵢ = Σ uᵢ × uᵢ₊₁ + Σ (Θᵢ − sin Θᵢ) Γᵢ for the unit vectors u to the corners. In the first sum u₀ may be
+    // taken from every uᵢ, so that for a small polygon nothing cancels; the second is smaller by Θ².
+    let apart: Vec<DVec3> = outline.iter().map(|vertex| vertex.apart(&first)).collect();
     let mut sum = 0.0;
-    for ((unit, a), (next, b)) in units.iter().zip(units.iter().cycle().skip(1)) {
-        let cross = unit.cross(*b - *a);
-        sum += normal.dot(a.cross(*b)) + angle_excess(cross.length(), unit.dot(*next)) * normal.dot(cross);
+    let ends = outline.iter().zip(outline.iter().cycle().skip(1));
+    for ((from, to), (a, b)) in ends.zip(apart.iter().zip(apart.iter().cycle().skip(1))) {
+        let (cross, cos) = (from.unit.cross(*b - *a), from.unit.dot(to.unit));
+        let sin = cross.length();
+        sum += normal.dot(a.cross(*b));
+        sum += if cos > 0.0 && sin < 0.3 {
+            excess_of_small_angle(sin) * normal.dot(cross)
+        } else {
+            let tilt = match from.edge {
+                _ if cos > 0.0 => normal.dot(cross) / sin,
+                // near opposites: their cross product has no digits, and the edge's is taken
+                Some(edge) => normal.dot(direction(polygon.normal_of(edge))),
+                // along the horizon Γ is ±n: of the two ways round, that on the side of the polygon's plane
+                None => (side * normal.cross(polygon.normal).dot(to.unit - from.unit)).signum(),
+            };
+            (sin.atan2(cos) - sin) * tilt
+        };
     }
     // rounding apart the sum is in the range
     (sum.abs() / TAU).min(1.0)
 }
 
-/// Θ/sin Θ − 1 of an angle in [0, π].
-fn angle_excess(sin: f64, cos: f64) -> f64 {
-    if cos > 0.0 && sin < 0.3 {
-        // arcsin(s)/s − 1 = s²/6 + 3s⁴/40 + …, term by term: the last one left out is below 1e-17 of the first
-        let (square, mut power, mut sum) = (sin * sin, 1.0, 0.0);
-        for n in 1..=15 {
-            let n = f64::from(n);
-            power *= square * (2.0 * n - 1.0) / (2.0 * n);
-            sum += power / (2.0 * n + 1.0);
-        }
-        sum
-    } else if sin > 0.0 {
-        sin.atan2(cos) / sin - 1.0
-    } else {
-        0.0 // the point lies on an edge, where the polygon is seen edge on
+/// Θ/sin Θ − 1 of an angle whose sine is below 0.3.
+fn excess_of_small_angle(sin: f64) -> f64 {
+    // arcsin(s)/s − 1 = s²/6 + 3s⁴/40 + …, term by term: the last one left out is below 1e-17 of the first
+    let (square, mut power, mut sum) = (sin * sin, 1.0, 0.0);
+    for n in 1..=15 {
+        let n = f64::from(n);
+        power *= square * (2.0 * n - 1.0) / (2.0 * n);
+        sum += power / (2.0 * n + 1.0);
+    }
+    sum
+}
+
+/// A difference of two points: rounded, and what rounding took from it.
+#[derive(Clone, Copy)]
+struct Exact([DVec3; 2]);
+
+impl Exact {
+    fn difference(a: DVec3, b: DVec3) -> Self {
+        let [x, y, z] = [(a.x, b.x), (a.y, b.y), (a.z, b.z)].map(|(a, b)| two_sum(a, -b));
+        Self([DVec3::new(x.0, y.0, z.0), DVec3::new(x.1, y.1, z.1)])
+    }
+
+    fn rounded(&self) -> DVec3 {
+        self.0[0]
+    }
+
+    /// The cross product, to an ulp or two unless it is smaller than the factors by more than 2⁻¹⁰⁰.
+    fn cross(&self, other: &Self) -> DVec3 {
+        let ([a, rest_a], [b, rest_b]) = (self.0, other.0);
+        // Kahan's difference of two products
+        let minor = |a: f64, b: f64, c: f64, d: f64| {
+            let product = c * d;
+            a.mul_add(b, -product) - c.mul_add(d, -product)
+        };
+        let cross =
+            DVec3::new(minor(a.y, b.z, a.z, b.y), minor(a.z, b.x, a.x, b.z), minor(a.x, b.y, a.y, b.x));
+        cross + (a.cross(rest_b) + rest_a.cross(b))
     }
 }
 
-/// The first corner as seen from `point`, and all of them as seen from that one, cut off where they are below the horizon of `normal` (Sutherland & Hodgman
-/// 1974). Their differences are taken before anything else, as a small polygon's are exact then. P does not depend on the unit of length: it is the largest
-/// coordinate here, so that no square leaves `f64`.
-fn above_horizon(corners: &[DVec3], point: DVec3, normal: DVec3) -> (DVec3, Vec<DVec3>) {
-    // a quarter of what is so large that a difference might overflow
-    let far = corners.iter().chain([&point]).any(|corner| corner.abs().max_element() > 0.25 * f64::MAX);
-    let scale = if far { 0.25 } else { 1.0 };
-    let (corners, point) = (corners.iter().map(|corner| *corner * scale), point * scale);
-    let corners: Vec<DVec3> = corners.collect();
-    let Some(first) = corners.first().copied() else { return (DVec3::ZERO, Vec::new()) };
-    let unit = corners.iter().map(|corner| (*corner - point).abs().max_element()).fold(0.0, f64::max);
-    let origin = (first - point) / unit;
-    let seen: Vec<(DVec3, f64)> = corners
-        .iter()
-        .map(|corner| {
-            let step = (*corner - first) / unit;
-            (step, normal.dot(origin + step))
-        })
-        .collect();
-    let mut kept = Vec::with_capacity(seen.len() + 2);
-    for ((step, height), (next, next_height)) in seen.iter().zip(seen.iter().cycle().skip(1)) {
-        if *height >= 0.0 {
-            kept.push(*step);
-        }
-        if (*height > 0.0 && *next_height < 0.0) || (*height < 0.0 && *next_height > 0.0) {
-            let part = height / (height - next_height);
-            kept.push(*step + (*next - *step) * part);
+/// A polygon as seen from the point: P does not depend on the unit of length, which is chosen so that no square leaves
+/// `f64`. A power of two leaves all differences what they are.
+struct Polygon {
+    point: DVec3,
+    corners: Vec<DVec3>,
+    unit: f64,
+    /// From the point to each corner.
+    ways: Vec<Exact>,
+    /// From each corner to the next.
+    edges: Vec<Exact>,
+    /// The plane's normal: twice the area.
+    normal: DVec3,
+}
+
+impl Polygon {
+    fn seen_from(point: DVec3, corners: &[DVec3]) -> Self {
+        // a quarter of what is so large that a difference might overflow
+        let far = corners.iter().chain([&point]).any(|corner| corner.abs().max_element() > 0.25 * f64::MAX);
+        let scale = if far { 0.25 } else { 1.0 };
+        let (point, corners): (_, Vec<DVec3>) =
+            (point * scale, corners.iter().map(|corner| *corner * scale).collect());
+        let longest = corners.iter().map(|corner| (*corner - point).abs().max_element()).fold(0.0, f64::max);
+        let unit = power_of_two(longest);
+        let exact = |a: DVec3, b: DVec3| Exact(Exact::difference(a, b).0.map(|part| part / unit));
+        let first = corners.first().copied().unwrap_or(point);
+        let steps = corners.iter().map(|corner| (*corner - first) / unit);
+        Self {
+            ways: corners.iter().map(|corner| exact(*corner, point)).collect(),
+            edges: corners.iter().zip(corners.iter().cycle().skip(1)).map(|(a, b)| exact(*b, *a)).collect(),
+            normal: steps.clone().zip(steps.skip(1)).map(|(a, b)| a.cross(b)).sum(),
+            corners,
+            point,
+            unit,
         }
     }
-    (origin, if kept.len() < 3 { Vec::new() } else { kept })
+
+    /// On which side of the point the plane is: −1 or 1, and 0 where it is in the plane.
+    fn side(&self) -> f64 {
+        let Some((first, way)) = self.corners.first().zip(self.ways.first()) else { return 0.0 };
+        let way = way.rounded();
+        let reach = self.corners.iter().map(|corner| (*corner - *first).abs().max_element() / self.unit);
+        let reach = reach.fold(0.0, f64::max);
+        // nearly always far above the rounding of so many terms
+        let volume = self.normal.dot(way);
+        if volume.abs() > 1e-10 * reach * reach * way.abs().max_element() * self.corners.len() as f64 {
+            volume.signum()
+        } else {
+            volume_sign(&self.corners, self.point)
+        }
+    }
+
+    /// vᵢ × vᵢ₊₁, of some length.
+    fn normal_of(&self, edge: usize) -> DVec3 {
+        let (here, there) = (&self.ways[edge], &self.ways[(edge + 1) % self.ways.len()]);
+        let size = |way: &Exact| way.rounded().abs().max_element();
+        // v × (vᵢ₊₁ − vᵢ) is the same for both: the nearer corner's is not lost beside the farther one's
+        let near = if size(here) < size(there) { here } else { there };
+        let unit = power_of_two(size(near));
+        Exact(near.0.map(|part| part / unit)).cross(&self.edges[edge])
+    }
+
+    /// What is not below the horizon (Sutherland & Hodgman 1974).
+    fn above_horizon(&self, normal: DVec3) -> Vec<Seen> {
+        let heights: Vec<f64> = self.ways.iter().map(|way| normal.dot(way.rounded())).collect();
+        let by_height = |a: &(&DVec3, &f64), b: &(&DVec3, &f64)| a.1.total_cmp(b.1);
+        let Some((highest, _)) = self.corners.iter().zip(&heights).max_by(by_height) else {
+            return Vec::new();
+        };
+        let mut kept = Vec::with_capacity(heights.len() + 2);
+        for edge in 0..heights.len() {
+            let next = (edge + 1) % heights.len();
+            let (height, next_height) = (heights[edge], heights[next]);
+            // `aside` from a corner
+            let at = |corner: usize, aside: DVec3, edge| {
+                let way = self.ways[corner].rounded() + aside;
+                let place = Some(((self.corners[corner] - highest) / self.unit + aside, length(way)));
+                Seen { unit: direction(way), place, edge }
+            };
+            if height >= 0.0 {
+                kept.push(at(edge, DVec3::ZERO, (height > 0.0 || next_height >= 0.0).then_some(edge)));
+            }
+            let leaves = height > 0.0 && next_height < 0.0;
+            if leaves || (height < 0.0 && next_height > 0.0) {
+                let (upper, lower, sign) = if leaves { (edge, next, 1.0) } else { (next, edge, -1.0) };
+                let part = heights[upper] / (heights[upper] - heights[lower]);
+                let aside = self.edges[edge].rounded() * (sign * part);
+                let edge_on = (!leaves).then_some(edge);
+                // far from the upper corner: where the planes of edge and horizon meet
+                let across = self.normal_of(edge).cross(normal) * sign;
+                kept.push(
+                    if length(aside) < 0.5 * length(self.ways[upper].rounded()) || across == DVec3::ZERO {
+                        at(upper, aside, edge_on)
+                    } else {
+                        Seen { unit: direction(across), place: None, edge: edge_on }
+                    },
+                );
+            }
+        }
+        if kept.len() < 3 { Vec::new() } else { kept }
+    }
+}
+
+/// A vertex of what is above the horizon.
+#[derive(Clone, Copy)]
+struct Seen {
+    unit: DVec3,
+    /// From the highest corner, and the distance from the point, where these are known.
+    place: Option<(DVec3, f64)>,
+    /// The polygon's edge on which the outline leaves; None along the horizon.
+    edge: Option<usize>,
+}
+
+impl Seen {
+    /// uᵢ − u₀.
+    fn apart(&self, first: &Self) -> DVec3 {
+        let (Some((step, own)), Some((first_step, length))) = (self.place, first.place) else {
+            return self.unit - first.unit;
+        };
+        let (step, first_step) = (step / own, first_step / own);
+        if step.length_squared().max(first_step.length_squared()) <= 0.25 {
+            // without taking the difference: the steps are what a small polygon is known by
+            let (step, share) = (step - first_step, length / (own + length));
+            step - first.unit * step.dot(self.unit * (1.0 - share) + first.unit * share)
+        } else {
+            self.unit - first.unit
+        }
+    }
+}
+
+/// The power of two at or below a positive number.
+fn power_of_two(x: f64) -> f64 {
+    const EXPONENT: u64 = 0x7ff << 52;
+    f64::from_bits(x.to_bits() & EXPONENT).max(f64::MIN_POSITIVE)
+}
+
+/// |v|, where the squares may leave `f64`.
+fn length(v: DVec3) -> f64 {
+    let unit = power_of_two(v.abs().max_element());
+    unit * (v / unit).length()
+}
+
+/// v/|v|, or 0.
+fn direction(v: DVec3) -> DVec3 {
+    (v / power_of_two(v.abs().max_element())).normalize_or_zero()
 }

@@ -10,6 +10,7 @@ definition, evaluated with 2400 bits (a sum where the crate has a quotient, wher
 """
 
 import csv
+import math
 import random
 import struct
 import sys
@@ -18,7 +19,8 @@ from mpmath import mp, mpf
 
 mp.prec = 2400
 ROWS = int(sys.argv[1]) if len(sys.argv) > 1 else 24
-random.seed(int(sys.argv[2]) if len(sys.argv) > 2 else 1)
+SEED = int(sys.argv[2]) if len(sys.argv) > 2 else 1
+random.seed(SEED)
 
 
 def bits(x):
@@ -85,6 +87,111 @@ def exp(x):
 
 def power(p, n):
     return mp.mpf(1) if n == 0 else (exp(n * mp.log(p)) if p > 0 else mpf(0))
+
+
+# ---- polygons ----
+
+# numbers of their own: the other rows stay what they are
+shapes = random.Random(SEED)
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def unit_vector():
+    v = [shapes.gauss(0, 1) for _ in range(3)]
+    length = dot(v, v) ** 0.5
+    return [x / length for x in v]
+
+
+def sideways(axis):
+    """Two unit vectors at right angles to a third, and to each other."""
+    u = cross(axis, unit_vector())
+    length = dot(u, u) ** 0.5
+    u = [x / length for x in u]
+    return u, cross(axis, u)
+
+
+def around(axis, centre, s):
+    """A triangle of size s at right angles to an axis."""
+    (u, w), turn = sideways(axis), shapes.uniform(0, 2 * math.pi)
+    angles = [turn + i * 2 * math.pi / 3 + shapes.uniform(-0.5, 0.5) for i in range(3)]
+    return [[centre[i] + s * (math.cos(a) * u[i] + math.sin(a) * w[i]) for i in range(3)] for a in angles]
+
+
+def any_polygon():
+    """Corners and a point 1 or so away from the plane, or from an edge, however large the polygon."""
+    s, kind = 10.0 ** shapes.uniform(*shapes.choice(((-16, 0), (0, 16), (0, 300)))), shapes.randrange(5)
+    point = [shapes.uniform(-1, 1) for _ in range(3)]
+    if kind == 0:  # a rectangle in a plane of two axes
+        x, y = [sorted(s * shapes.choice((-1, 1, shapes.uniform(-2, 2))) for _ in range(2)) for _ in range(2)]
+        k = shapes.randrange(3)
+        flat = [[x[0], y[0], 1.0], [x[1], y[0], 1.0], [x[1], y[1], 1.0], [x[0], y[1], 1.0]]
+        corners = [c[k:] + c[:k] for c in flat]
+    elif kind == 1:  # a triangle in the plane x = y
+        corners = [[a, a, s * shapes.uniform(-1, 1)] for a in (s * shapes.uniform(-1, 1) for _ in range(3))]
+    elif kind == 2:  # in any plane, as far as the coordinates allow
+        axis = unit_vector()
+        corners = around(axis, axis, s)
+    elif kind == 3:  # an edge that passes the point
+        along, aside, far, t = unit_vector(), unit_vector(), unit_vector(), shapes.random()
+        corners = [[-s * t * along[i] + aside[i] for i in range(3)], [s * (1 - t) * along[i] + aside[i] for i in range(3)]]
+        corners.append([s * x for x in far])
+        point = [0.0] * 3
+    else:  # one corner near, the others far
+        corners = [unit_vector(), [s * x for x in unit_vector()], [s * x for x in unit_vector()]]
+    return corners, point, unit_vector()
+
+
+def compact_polygon():
+    """A triangle of any size below 1, not much longer than wide, seen from 1 within 60° of its axis, and of the normal's."""
+    away = unit_vector()
+    leaning = []
+    while len(leaning) < 2:
+        v = unit_vector()
+        if dot(v, away) > 0.5:
+            leaning.append(v)
+    axis, normal = leaning
+    s = 10.0 ** shapes.choice((shapes.uniform(-150, 0), shapes.uniform(-3, -1)))
+    return around(axis, [0.0] * 3, 0.3 * s), [-x for x in away], normal
+
+
+def part_of_the_sky(corners, point, normal):
+    """P = |Σ Θ Γ·n|/2π over the polygon's edges, cut off at the horizon: 0 in its plane."""
+    n = [mpf(x) for x in normal]
+    v = [[mpf(a) - mpf(b) for a, b in zip(corner, point)] for corner in corners]
+    if dot(v[0], cross(v[1], v[2])) == 0:
+        return mpf(0)
+    h = [dot(n, x) for x in v]
+    above = []
+    for i in range(len(v)):
+        j = (i + 1) % len(v)
+        if h[i] >= 0:
+            above.append(v[i])
+        if h[i] * h[j] < 0:
+            above.append([(a * h[j] - b * h[i]) / (h[j] - h[i]) for a, b in zip(v[i], v[j])])
+    total = mpf(0)
+    for a, b in zip(above, above[1:] + above[:1]):
+        gamma = cross(a, b)
+        sin = mp.sqrt(dot(gamma, gamma))
+        if sin != 0:
+            total += mp.atan2(sin, dot(a, b)) * dot(n, gamma) / sin
+    return abs(total) / mp.sqrt(dot(n, n)) / (2 * mp.pi)
+
+
+def polygon(name, shape):
+    corners, point, normal = shape
+    if shapes.random() < 0.5:
+        corners = corners[::-1]
+    first = shapes.randrange(len(corners))
+    vectors = dict(p=point, n=normal) | {"c%d" % i: c for i, c in enumerate(corners[first:] + corners[:first])}
+    given = {name + axis: x for name, v in vectors.items() for axis, x in zip("xyz", v)}
+    return name, given, part_of_the_sky(corners, point, normal)
 
 
 def rows():
@@ -213,6 +320,8 @@ def rows():
         yield "rectangle_area", at, area
         yield "rectangle_density", at, 1 / area
         u = grid()
+        yield polygon("polygon", any_polygon())
+        yield polygon("polygon_compact", compact_polygon())
         # a large rate brings e^(−λx) back from below f64
         rate = size(280, 308)
         x = between(500, 1440) / rate
