@@ -200,8 +200,8 @@ impl Estimate {
     /// there is no distance: a truth that is NaN, or draws that were not finite.
     ///
     /// A difference of at most 8 units in the last place of `truth` is rounding and counts as none, so that an
-    /// estimator without variance has z = 0 where it is right. A truth of 0 has no last place: what its draws owe to
-    /// rounding, an estimator of 0 has to drop itself.
+    /// estimator without variance has z = 0 where it is right. A truth of 0 has no last place: an estimator of it
+    /// should return 0 where its value is rounding alone.
     pub fn z(&self, truth: f64) -> Option<f64> {
         let std_error = self.std_error()?;
         let off = self.mean() - truth;
@@ -252,7 +252,8 @@ impl Moments {
         let n = self.draws as f64;
         let mean = self.sum.over(n);
         let plain = self.sum_exponent == 0 && (self.exponent == 0 || self.squares == Twofold::ZERO);
-        if !plain || mean.hi.abs() >= UP {
+        // a count as large as that is left to `merged`, which does not go past the largest
+        if !plain || mean.hi.abs() >= UP || self.draws >= 1 << 63 {
             return self.into();
         }
         let off = Twofold { hi: mean.lo, lo: 0.0 }.squared().by(n);

@@ -270,19 +270,19 @@ impl<'a> Run<'a> {
         let (estimate, pilot, shortfall) = match budget {
             Budget::Draws(draws) => {
                 require_count("the number of draws", draws, draws > 0, "positive")?;
-                by_count(self.run_draws(&mut blocks, draws)?)
+                by_count(self.run_draws(&mut blocks, &watch, draws)?)
             }
             Budget::Time(time) => {
                 let ok = !time.is_zero() && time <= LONGEST;
                 require("the time in seconds", time.as_secs_f64(), ok, "positive and at most 1e6 (12 days)")?;
                 let draws = self.draws_in(&mut blocks, &watch, time)?;
-                by_count(self.run_draws(&mut blocks, draws)?)
+                by_count(self.run_draws(&mut blocks, &watch, draws)?)
             }
             Budget::StdError(target) => {
                 require("the std error", target, target > 0.0, "positive")?;
                 let pilot = self.pilot(&mut blocks, &watch, |_, std_error| std_error > 0.0)?;
                 let (draws, shortfall) = self.needed(&pilot, &watch, target)?;
-                (self.run_draws(&mut blocks, draws)?, Some(pilot), shortfall)
+                (self.run_draws(&mut blocks, &watch, draws)?, Some(pilot), shortfall)
             }
             Budget::RelativeError(target) => {
                 require("the relative error", target, target > 0.0, "positive")?;
@@ -291,7 +291,7 @@ impl<'a> Run<'a> {
                 })?;
                 let target = target * pilot.mean().abs();
                 let (draws, shortfall) = self.needed(&pilot, &watch, target)?;
-                (self.run_draws(&mut blocks, draws)?, Some(pilot), shortfall)
+                (self.run_draws(&mut blocks, &watch, draws)?, Some(pilot), shortfall)
             }
         };
         Ok(Outcome {
@@ -318,10 +318,14 @@ impl<'a> Run<'a> {
             .map_err(|error| Error::Threads { threads, reason: error.to_string() })
     }
 
-    fn run_draws<E: Estimator + ?Sized>(&self, blocks: &mut Blocks<'_, E>, draws: u64) -> Result<Estimate> {
+    fn run_draws<E: Estimator + ?Sized>(
+        &self,
+        blocks: &mut Blocks<'_, E>,
+        watch: &Watch<'_>,
+        draws: u64,
+    ) -> Result<Estimate> {
         let mut estimate = Estimate::new();
         let (mut next, mut batch) = (0, FIRST_BATCH);
-        let watch = Watch::start(self.clock);
         while estimate.draws() < draws {
             let start = watch.elapsed();
             blocks.extend(&mut estimate, self.seed, next..next.saturating_add(batch), draws)?;

@@ -214,6 +214,11 @@ fn more_draws_than_can_be_counted_stay_the_most() {
     }
     let [low, high] = estimate.confidence_interval(0.95).unwrap();
     assert!(low < 2.0 && 2.0 < high);
+    // one more, and one more
+    for _ in 0..3 {
+        estimate.push(2.0);
+        assert_eq!((estimate.draws(), estimate.mean()), (u64::MAX, 2.0));
+    }
 }
 
 #[test]
