@@ -226,6 +226,10 @@ pub struct Inversion<F> {
 /// What a cdf may be off by: sums of weights end an ulp or two from 1, and library cdfs are good to 1e-14 only.
 const ROUNDING: f64 = 1.0 / (1u64 << 40) as f64;
 
+/// How far out a cdf is asked to see whether it ends at 0 or 1, if the support reaches further: what a library computes of
+/// larger numbers, λx for one, is often infinite, and some of their cdfs panic there.
+const FARTHEST: f64 = f64::from_bits((1023 + 960) << 52);
+
 /// Whether it is in [0, 1] but for rounding. NaN is not.
 pub(crate) fn is_probability(computed: f64) -> bool {
     (-ROUNDING..=1.0 + ROUNDING).contains(&computed)
@@ -318,7 +322,8 @@ impl<F: Fn(f64) -> f64> Inversion<F> {
     /// Of an infinite end, the last number on the way there from `inside` at which F is not NaN; a finite end itself.
     fn last_number(&self, inside: f64, end: f64) -> f64 {
         let is_nan = |rank| (self.cdf)(from_order(rank)).is_nan();
-        let (mut number, mut nan) = (order(inside), order(end.clamp(-f64::MAX, f64::MAX)));
+        let far = if inside.abs() < FARTHEST { FARTHEST } else { f64::MAX };
+        let (mut number, mut nan) = (order(inside), order(end.clamp(-far, far)));
         if end.is_finite() || !is_nan(nan) {
             return from_order(nan);
         }
@@ -336,7 +341,7 @@ fn infinite_end(end: f64, (x, f): (f64, f64), beyond: f64, rise: f64) -> Result<
     let not_a_cdf = |reason| Err(Error::NotACdf { reason });
     if beyond <= ROUNDING {
         Ok(x)
-    } else if x.abs() < f64::MAX {
+    } else if x.abs() < FARTHEST {
         not_a_cdf(format!("beyond F({x:?}) = {f} it is NaN"))
     } else if rise <= ROUNDING * (1.0 - beyond) {
         not_a_cdf(format!("towards {end} it stays at {f}, which leaves mass at infinity"))

@@ -517,14 +517,14 @@ impl Cost {
     }
 }
 
-/// The one place where a run reads the time.
-enum Watch<'a> {
+/// The one place where the time of a run, or of a draw, is read.
+pub(crate) enum Watch<'a> {
     System(Option<Instant>),
     Own(&'a Clock<'a>, Duration),
 }
 
 impl<'a> Watch<'a> {
-    fn start(clock: Option<&'a Clock<'a>>) -> Self {
+    pub fn start(clock: Option<&'a Clock<'a>>) -> Self {
         match clock {
             Some(clock) => Self::Own(clock, clock()),
             None if cfg!(all(target_arch = "wasm32", target_os = "unknown")) => Self::System(None),
@@ -532,7 +532,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    fn elapsed(&self) -> Duration {
+    pub fn elapsed(&self) -> Duration {
         match self {
             Self::System(start) => start.map_or(Duration::ZERO, |start| start.elapsed()),
             Self::Own(clock, start) => clock().saturating_sub(*start),
