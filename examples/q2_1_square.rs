@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use unbiased::rectangle::{Integrand, Rectangle};
 use unbiased::workbook::{self, Answer, Options};
-use unbiased::{Estimator, Result, figure, from_fn, ratio};
+use unbiased::{Estimator, Result, f_over_p, figure, from_fn};
 
 /// The answers, as the options ask.
 pub fn answer(options: &Options) -> Result<Vec<Answer>> {
@@ -51,7 +51,7 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
 
     let f = Integrand::Gaussian;
     let bell = |x: f64, y: f64| f.at(x, y);
-    let general = ratio(|&[x, y]: &[f64; 2]| bell(x, y), rectangle);
+    let general = f_over_p(|&[x, y]: &[f64; 2]| bell(x, y), rectangle);
     answers.extend([
         row(", by the general formula", f, &general, 1_000_000)?,
         row(", all n² pairs", f, &rectangle.all_pairs(bell, n)?, 2000)?.parameter("n", n as f64),

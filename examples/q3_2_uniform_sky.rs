@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use unbiased::hemisphere::Hemisphere;
 use unbiased::lambertian::Lambertian;
 use unbiased::workbook::{self, Answer, Options};
-use unbiased::{Result, figure, from_fn, ratio};
+use unbiased::{Result, f_over_p, figure, from_fn};
 
 /// The answers, as the options ask.
 pub fn answer(options: &Options) -> Result<Vec<Answer>> {
@@ -17,7 +17,7 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
     let truth = cube.reflected(radiance);
 
     // over directions: f_r L_i cos θ / p(ω)
-    let over_directions = ratio(|w| cube.brdf() * radiance * w.cos_theta(), Hemisphere::Uniform);
+    let over_directions = f_over_p(|w| cube.brdf() * radiance * w.cos_theta(), Hemisphere::Uniform);
     // over angles: f_r L_i cos θ sin θ, with θ and φ uniform on [0, π/2) × [0, 2π)
     let over_angles = from_fn(|rng| {
         let theta = FRAC_PI_2 * rng.uniform();
@@ -25,7 +25,7 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
     });
     let without_sine =
         from_fn(|rng| cube.brdf() * radiance * (FRAC_PI_2 * rng.uniform()).cos() * FRAC_PI_2 * TAU);
-    let without_cosine = ratio(|_| cube.brdf() * radiance, Hemisphere::Uniform);
+    let without_cosine = f_over_p(|_| cube.brdf() * radiance, Hemisphere::Uniform);
 
     let row = |what| {
         Answer::new("3.2", what)

@@ -8,7 +8,7 @@ use rand::distr::Distribution;
 use unbiased::hemisphere::{Direction, Hemisphere};
 use unbiased::lambertian::{CosinePower, Lambertian, Light};
 use unbiased::workbook::{self, Answer, Options};
-use unbiased::{Result, figure, from_fn, ratio};
+use unbiased::{Result, f_over_p, figure, from_fn};
 
 /// The answers, as the options ask.
 pub fn answer(options: &Options) -> Result<Vec<Answer>> {
@@ -17,12 +17,12 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
     let light = |w: &Direction| radiance * sky.incoming(w);
     let truth = radiance * sky.reflected(cube);
 
-    let general = ratio(|w| cube.brdf() * light(w) * w.cos_theta(), Hemisphere::Uniform);
+    let general = f_over_p(|w| cube.brdf() * light(w) * w.cos_theta(), Hemisphere::Uniform);
     let simplified = from_fn(|rng| {
         let w = Hemisphere::Uniform.sample(rng);
         2.0 * cube.albedo() * light(&w) * w.cos_theta()
     });
-    let without_cosine = ratio(|w| cube.brdf() * light(w), Hemisphere::Uniform);
+    let without_cosine = f_over_p(|w| cube.brdf() * light(w), Hemisphere::Uniform);
     let half_density = from_fn(|rng| {
         let w = Hemisphere::Uniform.sample(rng);
         4.0 * cube.albedo() * light(&w) * w.cos_theta()

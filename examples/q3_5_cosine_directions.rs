@@ -9,7 +9,7 @@ use unbiased::check::Topic;
 use unbiased::hemisphere::{Direction, Hemisphere};
 use unbiased::lambertian::{CosinePower, Lambertian, Light};
 use unbiased::workbook::{self, Answer, Options};
-use unbiased::{Result, figure, from_fn, ratio};
+use unbiased::{Result, f_over_p, figure, from_fn};
 
 /// The answers, as the options ask.
 pub fn answer(options: &Options) -> Result<Vec<Answer>> {
@@ -18,7 +18,7 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
     let light = |w: &Direction| radiance * sky.incoming(w);
     let truth = radiance * sky.reflected(cube);
 
-    let general = ratio(|w| cube.brdf() * light(w) * w.cos_theta(), Hemisphere::Cosine);
+    let general = f_over_p(|w| cube.brdf() * light(w) * w.cos_theta(), Hemisphere::Cosine);
     let simplified = from_fn(|rng| cube.albedo() * light(&Hemisphere::Cosine.sample(rng)));
     // the classic mistakes: only the formula changed, or only the directions
     let only_formula = from_fn(|rng| cube.albedo() * light(&Hemisphere::Uniform.sample(rng)));

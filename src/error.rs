@@ -70,6 +70,12 @@ pub enum Error {
         /// The range claimed.
         range: [f64; 2],
     },
+    /// Shards do not make a run.
+    #[error("the shards do not make a run: {reason}")]
+    Parts {
+        /// What is wrong with them.
+        reason: String,
+    },
     /// An estimator is no function of a few uniform numbers.
     #[error("the estimator cannot be integrated: {reason}")]
     NotIntegrable {

@@ -6,8 +6,8 @@ use glam::DVec3;
 use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
 
-use crate::density::Density;
 use crate::error::{Result, require};
+use crate::estimator::Density;
 use crate::fast::sin_cos_of_turns;
 
 /// A direction: a vector of unit length (to 2 ulp) whose z axis is the surface's normal.
@@ -153,16 +153,7 @@ impl Hemisphere {
     pub fn direction_of(self, u: f64, v: f64) -> Result<Direction> {
         require("the uniform number u", u, (0.0..=1.0).contains(&u), "in [0, 1]")?;
         require("the uniform number v", v, (0.0..=1.0).contains(&v), "in [0, 1]")?;
-        Ok(self.invert(u, v))
-    }
-
-    #[inline(always)]
-    pub(crate) fn invert(self, u: f64, v: f64) -> Direction {
-        let (sin_theta, cos_theta) = match self {
-            Self::Uniform => ((u * (2.0 - u)).sqrt(), 1.0 - u),
-            Self::Cosine => (u.sqrt(), (1.0 - u).sqrt()),
-        };
-        Direction::of(sin_theta, cos_theta, sin_cos_of_turns(v))
+        Ok(self.warp([u, v]))
     }
 
     /// The uniform numbers \[u, v\] that [`direction_of`](Self::direction_of) turns into `direction`.
@@ -196,16 +187,26 @@ impl Hemisphere {
 impl Distribution<Direction> for Hemisphere {
     #[inline]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Direction {
-        let (u, v) = (StandardUniform.sample(rng), StandardUniform.sample(rng));
-        self.invert(u, v)
+        let u = StandardUniform.sample(rng);
+        self.warp([u, StandardUniform.sample(rng)])
     }
 }
 
-impl Density for Hemisphere {
+impl Density<2> for Hemisphere {
     type Point = Direction;
 
+    /// The direction of [`direction_of`](Self::direction_of).
+    #[inline(always)]
+    fn warp(&self, [u, v]: [f64; 2]) -> Direction {
+        let (sin_theta, cos_theta) = match self {
+            Self::Uniform => ((u * (2.0 - u)).sqrt(), 1.0 - u),
+            Self::Cosine => (u.sqrt(), (1.0 - u).sqrt()),
+        };
+        Direction::of(sin_theta, cos_theta, sin_cos_of_turns(v))
+    }
+
     /// 1/(2π) or cos θ/π, in 1/sr; 0 below the horizon.
-    #[inline]
+    #[inline(always)]
     fn pdf(&self, direction: &Direction) -> f64 {
         let cos_theta = direction.cos_theta();
         match self {

@@ -8,11 +8,10 @@
 use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
 
-use crate::density::Density;
 use crate::error::{Error, Result, require};
+use crate::estimator::{Density, Estimator, from_uniforms};
 use crate::extended::Extended;
 use crate::fast;
-use crate::run::Estimator;
 use crate::stream::Stream;
 
 /// The exponential distribution with rate λ: p(x) = λ e^(−λx) for x ≥ 0.
@@ -38,6 +37,7 @@ use crate::stream::Stream;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Exponential {
     rate: f64,
+    mean: f64,
 }
 
 impl Exponential {
@@ -47,7 +47,8 @@ impl Exponential {
     /// If λ is not positive and finite.
     pub fn new(rate: f64) -> Result<Self> {
         let ok = rate > 0.0 && rate.is_finite();
-        Ok(Self { rate: require("the rate λ", rate, ok, "positive and finite")? })
+        let rate = require("the rate λ", rate, ok, "positive and finite")?;
+        Ok(Self { rate, mean: 1.0 / rate })
     }
 
     /// The rate λ.
@@ -57,12 +58,12 @@ impl Exponential {
 
     /// The mean 1/λ.
     pub fn mean(&self) -> f64 {
-        1.0 / self.rate
+        self.mean
     }
 
     /// The variance 1/λ².
     pub fn variance(&self) -> f64 {
-        self.mean() * self.mean()
+        self.mean * self.mean
     }
 
     /// The density p(x) = λ e^(−λx), 0 for x < 0.
@@ -155,8 +156,7 @@ fn require_probability(u: f64) -> Result<f64> {
 impl Distribution<f64> for Exponential {
     #[inline]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
-        let u: f64 = StandardUniform.sample(rng);
-        (1.0 - u).ln().abs() / self.rate
+        self.warp([StandardUniform.sample(rng)])
     }
 }
 
@@ -169,8 +169,15 @@ impl Distribution<f32> for Exponential {
     }
 }
 
-impl Density for Exponential {
+impl Density<1> for Exponential {
     type Point = f64;
+
+    #[inline(always)]
+    fn warp(&self, [u]: [f64; 1]) -> f64 {
+        let x = fast::ln(1.0 - u).abs();
+        // a product in place of a quotient takes half the time
+        if self.mean.is_normal() { x * self.mean } else { x / self.rate }
+    }
 
     fn pdf(&self, x: &f64) -> f64 {
         Exponential::pdf(self, *x)
@@ -180,18 +187,11 @@ impl Density for Exponential {
 impl Estimator for Exponential {
     #[inline]
     fn draw(&self, rng: &mut Stream) -> f64 {
-        self.sample(rng)
+        from_uniforms(|u| self.warp(u)).draw(rng)
     }
 
     fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
-        rng.fill_uniform(draws);
-        let (rate, mean) = (self.rate, self.mean());
-        if mean.is_normal() {
-            // a product in place of a quotient: half the time
-            fast::map(draws, |u| fast::ln(1.0 - u).abs() * mean);
-        } else {
-            fast::map(draws, |u| fast::ln(1.0 - u).abs() / rate);
-        }
+        from_uniforms(|u| self.warp(u)).fill(rng, draws);
     }
 }
 

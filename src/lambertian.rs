@@ -8,13 +8,10 @@
 
 use std::f64::consts::PI;
 
-use crate::density::{Density, ratio};
 use crate::error::{Result, require};
+use crate::estimator::{Density, Estimator, f_over_p, from_uniforms};
 use crate::extended::Extended;
-use crate::fast::{self, OfPair};
 use crate::hemisphere::{Direction, Hemisphere};
-use crate::run::Estimator;
-use crate::stream::Stream;
 
 /// A diffuse surface: it reflects the part ρ of the light that falls on it, the same radiance in all directions.
 ///
@@ -80,59 +77,32 @@ impl Lambertian {
     /// are what is left when p is put in and cancelled on paper.
     ///
     /// Directions below the horizon count as 0, so a density over the whole sphere will do, too.
-    pub fn estimator<L, D>(self, light: L, density: D) -> impl Estimator
+    pub fn estimator<const N: usize, L, D>(self, light: L, density: D) -> impl Estimator
     where
         L: Fn(&Direction) -> f64 + Sync,
-        D: Density<Point = Direction>,
+        D: Density<N, Point = Direction>,
     {
         let brdf = self.brdf();
         let integrand = move |direction: &Direction| {
             let cos_theta = direction.cos_theta();
             if cos_theta > 0.0 { brdf * light(direction) * cos_theta } else { 0.0 }
         };
-        ratio(integrand, density)
+        f_over_p(integrand, density)
     }
 
     /// The estimator 2ρ L_i cos θ of L_r, directions drawn uniformly (worksheet 3.4).
     pub fn uniform_estimator<L: Fn(&Direction) -> f64 + Sync>(self, light: L) -> impl Estimator {
-        Reflected::<L, false> { albedo: self.albedo, light }
+        from_uniforms(move |u| {
+            let direction = Hemisphere::Uniform.warp(u);
+            2.0 * self.albedo * light(&direction) * direction.cos_theta()
+        })
     }
 
     /// The estimator ρ L_i of L_r, directions drawn in proportion to cos θ (worksheet 3.5). The directions must
     /// be *drawn* so: with uniform ones this formula is right under a light that does not depend on θ, such as a
     /// constant one, and wrong under others.
     pub fn cosine_estimator<L: Fn(&Direction) -> f64 + Sync>(self, light: L) -> impl Estimator {
-        Reflected::<L, true> { albedo: self.albedo, light }
-    }
-}
-
-/// The estimator 2ρ L_i cos θ with uniform directions, or ρ L_i with `COSINE` ones.
-struct Reflected<L, const COSINE: bool> {
-    albedo: f64,
-    light: L,
-}
-
-impl<L: Fn(&Direction) -> f64, const COSINE: bool> OfPair for Reflected<L, COSINE> {
-    #[inline(always)]
-    fn of_pair(&self, u: f64, v: f64) -> f64 {
-        let hemisphere = if COSINE { Hemisphere::Cosine } else { Hemisphere::Uniform };
-        let direction = hemisphere.invert(u, v);
-        let light = (self.light)(&direction);
-        if COSINE { self.albedo * light } else { 2.0 * self.albedo * light * direction.cos_theta() }
-    }
-}
-
-impl<L: Fn(&Direction) -> f64 + Sync, const COSINE: bool> Estimator for Reflected<L, COSINE> {
-    #[inline]
-    fn draw(&self, rng: &mut Stream) -> f64 {
-        let (u, v) = (rng.uniform(), rng.uniform());
-        rng.count_evaluations(1);
-        self.of_pair(u, v)
-    }
-
-    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
-        fast::fill_by_pairs(draws, rng, self);
-        rng.count_evaluations(draws.len() as u64);
+        from_uniforms(move |u| self.albedo * light(&Hemisphere::Cosine.warp(u)))
     }
 }
 

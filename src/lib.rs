@@ -5,7 +5,7 @@
 //!
 //! > ⟨Fₙ⟩ = 1/n Σ f(Xᵢ)/p(Xᵢ),
 //!
-//! and the crate reads as it: a [`Density`] to draw from, an integrand, an [`Estimator`] made of the two by [`ratio`], a
+//! and the crate reads as it: a [`Density`] to draw from, an integrand, an [`Estimator`] made of the two by [`f_over_p`], a
 //! [run](estimate()) of it, and an [`Estimate`] with its error.
 //!
 //! ```
@@ -39,7 +39,7 @@
 //!
 //! What a second of each buys is what [`trade`] measures.
 //!
-//! Underneath lie [`density`](mod@density), [`run`], [`estimate`](mod@estimate), [`stream`] and [`error`]; above, with the feature `workbook` (on by default),
+//! Underneath lie [`estimator`], [`placement`], [`run`], [`estimate`](mod@estimate), [`stream`] and [`error`]; above, with the feature `workbook` (on by default),
 //! `figure` and `workbook`. The files in `examples/` are the answers to read, one a question.
 //!
 //! # Conventions
@@ -56,9 +56,9 @@
 
 pub mod box_room;
 pub mod check;
-pub mod density;
 pub mod error;
 pub mod estimate;
+pub mod estimator;
 mod extended;
 pub mod fast;
 #[cfg(feature = "workbook")]
@@ -69,6 +69,7 @@ pub mod lambertian;
 #[cfg(feature = "notebook")]
 pub mod notebook;
 pub mod paths;
+pub mod placement;
 mod quantile;
 pub mod rectangle;
 pub mod roulette;
@@ -78,10 +79,10 @@ pub mod trade;
 #[cfg(feature = "workbook")]
 pub mod workbook;
 
-pub use density::{Density, Ratio, ratio};
 pub use error::{Error, Result};
 pub use estimate::Estimate;
-pub use run::{Budget, Clock, Cost, Estimator, FromFn, Outcome, Progress, Run, Shortfall, estimate, from_fn};
+pub use estimator::{Density, Estimator, f_over_p, from_fn, from_uniforms};
+pub use run::{Budget, Clock, Cost, Outcome, Part, Progress, Run, Shortfall, estimate, merge};
 pub use stream::Stream;
 
 /// The README's code runs as a test.

@@ -22,7 +22,7 @@ pub(crate) use shown::duration;
 pub(crate) use shown::two_digits;
 
 use crate::error::{Result, require};
-use crate::run::Estimator;
+use crate::estimator::Estimator;
 use batches::Batches;
 
 /// Std errors within which a bias, or a difference between two rivals, may be noise: of 370 that are none, one lies beyond.

@@ -19,7 +19,7 @@ use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
 use unbiased::paths::{Bounces, FindLight, Paths};
 use unbiased::rectangle::{Integrand, Rectangle};
 use unbiased::roulette::{LightModel, Roulette};
-use unbiased::{Budget, Error, Estimate, Estimator, Run, Stream, estimate, from_fn, ratio};
+use unbiased::{Budget, Density, Error, Estimate, Estimator, Run, Stream, estimate, f_over_p, from_fn};
 
 /// 1 − 2⁻⁵³, the largest number below 1.
 const NEARLY_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
@@ -182,7 +182,7 @@ proptest! {
         prop_assert!((low..=high).contains(&x) && (low..=high).contains(&to_x));
         prop_assert!((u > v || x <= to_x) && (v > u || to_x <= x) && (v > u || y <= to_y));
         prop_assert_eq!(at(0.0, 0.0), [low, 0.0]);
-        prop_assert_eq!(rectangle.pdf_at([x, y]), 1.0 / rectangle.area());
+        prop_assert_eq!(rectangle.pdf(&[x, y]), 1.0 / rectangle.area());
     }
 
     #[test]
@@ -264,7 +264,7 @@ proptest! {
     fn a_scripted_stream_stays_on_the_grid(uniforms in prop::collection::vec(any_number(), 0..9)) {
         let mut rng = Stream::scripted(&uniforms);
         let mut filled = vec![0.5; 12];
-        Stream::scripted(&uniforms).fill_uniform(&mut filled);
+        common::fill_uniform(&mut Stream::scripted(&uniforms), &mut filled);
         for (i, filled) in filled.into_iter().enumerate() {
             let u = rng.uniform();
             prop_assert_eq!(u, filled);
@@ -303,7 +303,7 @@ proptest! {
     /// f(X)/p(X) of any bits is that, and what is not finite ends a run with an error.
     #[test]
     fn a_ratio_of_any_bits_is_a_number_or_an_error(f in any_number(), seed in any::<u64>()) {
-        let constant = ratio(|_| f, Rectangle::WORKSHEET);
+        let constant = f_over_p(|_| f, Rectangle::WORKSHEET);
         let value = f / (1.0 / 16.0);
         match estimate(&constant, Budget::Draws(600), seed) {
             Ok(estimate) => prop_assert!(value.is_finite() && estimate.mean() == value),
@@ -517,7 +517,7 @@ fn stuck_generators_give_finite_samples() {
         for rectangle in [Rectangle::WORKSHEET, tall] {
             let [x, y] = rectangle.sample(&mut rng);
             let ([a, b], [c, d]) = (rectangle.x_range(), rectangle.y_range());
-            assert!((a..=b).contains(&x) && (c..=d).contains(&y) && rectangle.pdf_at([x, y]) > 0.0);
+            assert!((a..=b).contains(&x) && (c..=d).contains(&y) && rectangle.pdf(&[x, y]) > 0.0);
         }
         for (hemisphere, least) in [(Hemisphere::Uniform, 2f64.powi(-53)), (Hemisphere::Cosine, 1.05e-8)] {
             let direction = hemisphere.sample(&mut rng);
@@ -525,7 +525,7 @@ fn stuck_generators_give_finite_samples() {
                 ulps_off_unit(&direction) <= 2.0 && direction.cos_theta() >= least,
                 "{direction:?} of {word:#x}"
             );
-            assert!(hemisphere.pdf_at(direction) > 0.0);
+            assert!(hemisphere.pdf(&direction) > 0.0);
         }
         // at most 53 ln 2·2⁵³ bounces, in one step
         let bounces: u64 = longest.sample(&mut rng);
@@ -559,7 +559,7 @@ fn stuck_streams_give_finite_draws() {
     for f in Integrand::ALL {
         let at = move |x: f64, y: f64| f.at(x, y);
         estimators
-            .push((format!("{f}, ratio"), Box::new(ratio(move |&[x, y]: &[f64; 2]| f.at(x, y), square))));
+            .push((format!("{f}, ratio"), Box::new(f_over_p(move |&[x, y]: &[f64; 2]| f.at(x, y), square))));
         estimators.push((format!("{f}, independent"), Box::new(square.independent(at))));
         estimators.push((format!("{f}, all pairs"), Box::new(square.all_pairs(at, 5).unwrap())));
         estimators.push((format!("{f}, jittered"), Box::new(square.jittered(at, 5).unwrap())));
@@ -586,16 +586,5 @@ fn stuck_streams_give_finite_draws() {
             assert!(draw.is_finite() && draw >= -64.0, "{name}: {draw:?} of u = {u:?}");
             assert!(rng.random_numbers() <= 200, "{name}: u = {u:?}");
         }
-    }
-}
-
-/// `pdf` of a point by value.
-trait PdfAt<P> {
-    fn pdf_at(&self, point: P) -> f64;
-}
-
-impl<D: unbiased::Density> PdfAt<D::Point> for D {
-    fn pdf_at(&self, point: D::Point) -> f64 {
-        self.pdf(&point)
     }
 }

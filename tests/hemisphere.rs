@@ -244,10 +244,10 @@ fn a_seed_keeps_its_bits() {
 }
 
 const GOLDEN: [[u64; 3]; 4] = [
-    [0xbfebdb155eb16a9d, 0xbfd95634060a9534, 0x3fd2b7290dba59ca],
-    [0xbfcda8b3b6c410e4, 0x3fdbbf7ef591fb1c, 0x3febddc8cfb3c0ef],
-    [0xbfe2322ab6663225, 0x3fe3f7736082e9d0, 0x3fe12749efdb7817],
-    [0xbfe09b4bcf772080, 0xbfb5b7c89704a188, 0x3feb37f3c303fdff],
+    [0x3feeecb8a434c644, 0x3fcd90eccdf3b5c8, 0x3fbce051633df6d0],
+    [0x3fdb6383843d8f49, 0x3fb3b83000bbacab, 0x3fecd103b303e101],
+    [0x3fb9d4f8c11f7ef1, 0xbfeb6fc92be65556, 0x3fe0263f16b29197],
+    [0xbfe19d3740cc4727, 0x3fb67ab5ca509fe5, 0x3fea915a193fd7fc],
 ];
 
 #[test]

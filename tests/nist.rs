@@ -6,7 +6,7 @@
 mod common;
 
 use proptest::prelude::*;
-use unbiased::{Budget, Estimate, Stream, estimate, from_fn};
+use unbiased::{Budget, Estimate, Estimator, Stream, estimate, from_fn};
 
 const SETS: [(&str, &str); 6] = [
     ("NumAcc1", include_str!("data/nist/NumAcc1.dat")),
@@ -168,14 +168,17 @@ fn draws_far_from_0_keep_the_digits_of_their_spread() {
         for block in 0..N.div_ceil(BLOCK as u64) {
             let mut rng = Stream::new(common::seed(2), block);
             let size = BLOCK.min((N - block * BLOCK as u64) as usize);
-            let draws: Vec<f64> = (0..size).map(|_| rng.uniform() + offset).collect();
+            let mut draws = vec![0.0; size];
+            shifted.fill(&mut rng, &mut draws);
             exact.add(&draws);
             draws.iter().for_each(|draw| pushed.push(*draw));
         }
         let run = estimate(&shifted, Budget::Draws(N), common::seed(2)).unwrap();
         let ways = [run, pushed].map(|estimate| exact.lre(&estimate));
         println!("U + {offset:e}, n = 1e7: run {:.1?}, one at a time {:.1?}", ways[0], ways[1]);
-        assert!(ways.into_iter().all(is_good), "{offset:e}: {ways:?}");
+        // at 1e15 the sum of draws one at a time is rounded to 2⁻³⁴, 10⁷ times: 10⁻¹³ of the spread
+        let last = if offset == 1e15 { 13.0 } else { 14.0 };
+        assert!(is_good(ways[0]) && ways[1][0] >= 14.5 && ways[1][1] >= last, "{offset:e}: {ways:?}");
     }
 }
 
@@ -188,7 +191,7 @@ fn the_mean_of_1e9_draws_is_that_of_a_compensated_sum() {
     let (mut sum, mut lost) = (0f64, 0f64);
     let mut draws = vec![0.0; 1_000_000];
     for _ in 0..1000 {
-        rng.fill_uniform(&mut draws);
+        common::fill_uniform(&mut rng, &mut draws);
         estimate.extend_from_slice(&draws);
         for x in &draws {
             let next = sum + x;

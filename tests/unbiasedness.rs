@@ -34,7 +34,7 @@ use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
 use unbiased::paths::{Bounces, FindLight, Paths, reflected};
 use unbiased::rectangle::Rectangle;
 use unbiased::roulette::{LightModel, Roulette};
-use unbiased::{Density, Estimator, Stream, from_fn, ratio};
+use unbiased::{Density, Estimator, Stream, f_over_p, from_fn};
 
 // ---- what each test costs and certifies --------------------------------------------------------------------------
 
@@ -390,7 +390,7 @@ fn rectangle_independent() {
 #[test]
 fn rectangle_ratio() {
     certify("rectangle_ratio", polynomials(), |f| {
-        case(ratio(move |[x, y]: &[f64; 2]| f.at(*x, *y), f.rectangle), f.integral(), f.most())
+        case(f_over_p(move |[x, y]: &[f64; 2]| f.at(*x, *y), f.rectangle), f.integral(), f.most())
     });
 }
 
@@ -466,7 +466,7 @@ proptest! {
         let scale = rectangle.area() * coefficients.iter().map(most).sum::<f64>();
         let g = f.clone();
         assert_exactly(&rectangle.independent(&g), 2, integral, Some(variance), scale);
-        assert_exactly(&ratio(move |[x, y]: &[f64; 2]| f(*x, *y), rectangle), 2, integral, Some(variance), scale);
+        assert_exactly(&f_over_p(move |[x, y]: &[f64; 2]| f(*x, *y), rectangle), 2, integral, Some(variance), scale);
         let one = if jittered { exactly(&rectangle.jittered(&g, 1).unwrap(), 2) } else { exactly(&rectangle.all_pairs(&g, 1).unwrap(), 2) };
         prop_assert!((one.unwrap().mean - integral).abs() <= 1e-9 * scale);
     }
@@ -556,15 +556,12 @@ fn lambertian_general() {
 #[derive(Debug, Clone, Copy)]
 struct Sphere;
 
-impl Distribution<Direction> for Sphere {
-    fn sample<R: rand::Rng + ?Sized>(&self, rng: &mut R) -> Direction {
-        let [u, v]: [f64; 2] = [(); 2].map(|()| rand::distr::StandardUniform.sample(rng));
+impl Density<2> for Sphere {
+    type Point = Direction;
+
+    fn warp(&self, [u, v]: [f64; 2]) -> Direction {
         Direction::polar(1.0 - 2.0 * u, 2.0 * PI * v).unwrap()
     }
-}
-
-impl Density for Sphere {
-    type Point = Direction;
 
     fn pdf(&self, _: &Direction) -> f64 {
         0.25 / PI

@@ -22,7 +22,7 @@ use unbiased::inversion::Exponential;
 use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
 use unbiased::rectangle::Rectangle;
 use unbiased::roulette::{LightModel, Roulette, RoulettePaths, TruncatedPaths};
-use unbiased::{Density, Error, Estimate, Estimator, Stream, from_fn, ratio};
+use unbiased::{Density, Error, Estimate, Estimator, Stream, f_over_p, from_fn};
 
 // ---- tables ----
 
@@ -231,7 +231,7 @@ fn evaluate(row: &Row) -> Result<Found, Error> {
         "box_density" => box_of()?.pdf(&[0.5 * x("w"), x("h")]).into(),
         "box_weight" => {
             let draw = |estimator: &dyn Estimator| estimator.draw(&mut Stream::scripted(&[0.3, 0.7]));
-            Values(vec![draw(&ratio(|_| 1.0, box_of()?)), draw(&box_of()?.independent(|_, _| 1.0))])
+            Values(vec![draw(&f_over_p(|_| 1.0, box_of()?)), draw(&box_of()?.independent(|_, _| 1.0))])
         }
         "rectangle_area" => rectangle()?.area().into(),
         "rectangle_density" => rectangle()?.pdf(&[x("a"), x("d")]).into(),

@@ -6,9 +6,9 @@ use std::fmt;
 use rand::distr::Distribution;
 
 use crate::error::{Result, require};
+use crate::estimator::Estimator;
 use crate::hemisphere::{Direction, Hemisphere};
 use crate::inversion::is_probability;
-use crate::run::Estimator;
 use crate::stream::Stream;
 
 /// What a comparison of draws with their claimed distribution found.

@@ -6,12 +6,12 @@ use std::time::Duration;
 
 use pulp::NullaryFnOnce;
 use rand::Rng;
-use sobol_burley::parts::sobol_int4_rev;
 
 use crate::error::{Error, Result, require_count};
+use crate::estimator::Estimator;
 use crate::fast::widest;
-use crate::rectangle::scrambled;
-use crate::run::{Estimator, Watch};
+use crate::placement::{Placement, Sobol};
+use crate::run::Watch;
 use crate::stream::Stream;
 
 /// The exact moments of an estimator, each to the accuracy that [`exactly`] states.
@@ -41,11 +41,11 @@ pub struct Exact {
 ///   w.
 /// - *Two or three:* the same along a diagonal of the cube, which so sees what depends on one of the numbers
 ///   alone. What depends on several at once is seen by the quadrature's own points, less than a hundredth of
-///   the side apart in two dimensions and a fortieth in three, and by 16 scrambled Sobol sets of 2¹² points
+///   the side apart in two dimensions and a fortieth in three, and by 16 scrambled Sobol sets of 2¹⁴ points
 ///   (Owen 1997): their values must lie in the quadrature's range, a quarter of it to spare, and their means
-///   of X and of its square agree to ten std errors and a 4096th of that range. So a part of the cube that is
-///   narrower than those points in every direction may be **missed**: with a probability of about exp(−65536
-///   a) if it fills the part a of the cube and X leaves that range there, and always if X does not.
+///   of X and of its square agree to ten std errors and a 16384th of that range. So a part of the cube that is
+///   narrower than those points in every direction may be **missed**: with a probability of about
+///   exp(−262144 a) if it fills the part a of the cube and X leaves that range there, and always if X does not.
 ///
 /// If a draw takes more than a microsecond, 2⁻¹⁴ ≈ 6e-5 stands in the place of 2⁻²⁰.
 ///
@@ -133,7 +133,8 @@ const JUMPS: usize = 256;
 
 /// Independent scramblings of Sobol's points, the points of each, and the std errors that they may be off.
 const SCRAMBLES: usize = 16;
-const POINTS: u32 = 1 << 12;
+const POINTS: u32 = 1 << 14;
+const TOGETHER: usize = 1 << 10;
 const STD_ERRORS: f64 = 10.0;
 
 /// Integrals over a piece, of X in units of its own size, about a value in its middle.
@@ -522,18 +523,19 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
     fn scattered(&mut self) -> Result<[[f64; 2]; 2]> {
         let mut means = [[0.0; SCRAMBLES]; 2];
         for scramble in 0..SCRAMBLES {
-            let mut random = Stream::new(1, scramble as u64);
-            let scrambles: [u32; 3] = std::array::from_fn(|_| random.next_u32());
-            for index in 0..POINTS {
-                let sobol: [u32; 4] = sobol_int4_rev(index.reverse_bits(), 0).into();
-                for ((coordinate, sobol), scramble) in self.point.iter_mut().zip(sobol).zip(scrambles) {
-                    let u = scrambled(sobol, scramble, POINTS.trailing_zeros(), random.next_u64());
-                    *coordinate = (u * GRID as f64) as u64;
-                }
-                let x = self.draw()?;
-                let there = self.sums_of(x)?.moments;
-                for (means, value) in means.iter_mut().zip(there) {
-                    means[scramble] += value / f64::from(POINTS);
+            let seed = Stream::new(1, scramble as u64).next_u64();
+            let mut points = Stream::placed(Placement::Sobol(Sobol::new(POINTS, seed)), seed);
+            for _ in 0..POINTS / TOGETHER as u32 {
+                let mut draws = [0.0; TOGETHER];
+                self.estimator.fill(&mut points, &mut draws);
+                for x in draws {
+                    if !x.is_finite() {
+                        return Err(refused(format!("it is {x} at a scattered point")));
+                    }
+                    let there = self.sums_of(x)?.moments;
+                    for (means, value) in means.iter_mut().zip(there) {
+                        means[scramble] += value / f64::from(POINTS);
+                    }
                 }
             }
         }

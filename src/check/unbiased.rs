@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use super::wealth::{Bets, Growth, Wealth};
 use crate::error::{Error, Result, require};
 use crate::estimate::Estimate;
-use crate::run::{Estimator, walk_block};
+use crate::estimator::Estimator;
+use crate::run::walk_block;
 
 /// What a check says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Functions and loops that go wide: plain sums, products and selections, which the compiler turns into vector instructions.
 //!
-//! [`ln`], [`exp`] and [`sin_cos_of_turns`] are what drawing needs of a mathematical library, within 2 units of the last place and without a branch or a call, so
+//! [`ln`], [`exp`], [`floor`] and [`sin_cos_of_turns`] are what drawing needs of a mathematical library, within 2 units of the last place and without a branch or a call, so
 //! that a loop over them is vectorised. The crate's own loops are compiled for each of a processor's instruction sets and chosen as the program runs; nothing has to be asked
 //! of the compiler. An integrand or a light of one's own goes wide in the same way if nothing but arithmetic and these functions is in it.
 //!
@@ -10,14 +10,14 @@
 
 use pulp::{Arch, NullaryFnOnce};
 
-use crate::stream::Stream;
-
 mod exp;
+mod floor;
 mod ln;
 mod real;
 mod turns;
 
 pub use exp::exp;
+pub use floor::floor;
 pub use ln::ln;
 pub(crate) use real::Real;
 pub use turns::sin_cos_of_turns;
@@ -32,12 +32,6 @@ pub(crate) fn widest<K: NullaryFnOnce>(kernel: K) -> K::Output {
         return kernel.call();
     }
     Arch::new().dispatch(kernel)
-}
-
-/// `f` of every number of a slice, in place.
-#[inline]
-pub(crate) fn map<F: Fn(f64) -> f64>(numbers: &mut [f64], f: F) {
-    widest(Map { numbers, f });
 }
 
 /// Whether no number is NaN or infinite.
@@ -58,64 +52,6 @@ impl NullaryFnOnce for AllFinite<'_> {
     }
 }
 
-/// What a draw is, given two uniform numbers; `of_pair` has to be `#[inline(always)]`.
-pub(crate) trait OfPair {
-    fn of_pair(&self, u: f64, v: f64) -> f64;
-}
-
-/// Fills `draws`, each from two uniform numbers of its own.
-#[inline]
-pub(crate) fn fill_by_pairs<F: OfPair>(draws: &mut [f64], rng: &mut Stream, f: &F) {
-    let (mut u, mut v) = ([0.0; PAIRS], [0.0; PAIRS]);
-    for draws in draws.chunks_mut(PAIRS) {
-        for numbers in [&mut u, &mut v] {
-            rng.fill_uniform(&mut numbers[..draws.len()]);
-        }
-        widest(Pairs { u: &u, v: &v, draws, f });
-    }
-}
-
-/// Pairs of uniform numbers that wait in the first-level cache.
-const PAIRS: usize = 256;
-
-struct Pairs<'a, F> {
-    u: &'a [f64; PAIRS],
-    v: &'a [f64; PAIRS],
-    draws: &'a mut [f64],
-    f: &'a F,
-}
-
-impl<F: OfPair> NullaryFnOnce for Pairs<'_, F> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        // an array that nothing else can refer to: a store into `draws` might change what `f` holds, for all that the compiler knows
-        let mut values = [0.0; PAIRS];
-        let count = self.draws.len().min(PAIRS);
-        for ((value, u), v) in values[..count].iter_mut().zip(self.u).zip(self.v) {
-            *value = self.f.of_pair(*u, *v);
-        }
-        self.draws.copy_from_slice(&values[..count]);
-    }
-}
-
-struct Map<'a, F> {
-    numbers: &'a mut [f64],
-    f: F,
-}
-
-impl<F: Fn(f64) -> f64> NullaryFnOnce for Map<'_, F> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        for number in self.numbers {
-            *number = (self.f)(*number);
-        }
-    }
-}
-
 #[cfg(test)]
 pub(crate) mod tests {
     use std::cell::Cell;
@@ -125,7 +61,7 @@ pub(crate) mod tests {
     use crate::lambertian::Lambertian;
     use crate::rectangle::{Integrand, Rectangle};
     use crate::roulette::Roulette;
-    use crate::{Estimate, Estimator};
+    use crate::{Estimate, Estimator, Stream};
 
     thread_local! {
         /// Whether this thread runs its loops without vectors wider than all processors have.

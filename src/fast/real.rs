@@ -3,7 +3,6 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::sin_cos_of_turns;
-use crate::stream::Stream;
 
 /// `f64` or `f32`.
 pub(crate) trait Real:
@@ -15,7 +14,7 @@ pub(crate) trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// The uniform numbers k·2⁻ⁿ of one word have this step: 2⁻⁵³, or 2⁻²⁴ for each of two.
+    /// Uniform numbers have this step: 2⁻⁵³ or 2⁻²⁴.
     const STEP: Self;
 
     /// The least component of a direction: the product of three of them has an inverse.
@@ -34,8 +33,9 @@ pub(crate) trait Real:
 
     fn sin_cos_of_turns(self) -> (Self, Self);
 
-    /// Fills `uniforms` with uniform numbers.
-    fn fill(uniforms: &mut [Self], rng: &mut Stream);
+    /// The uniform number of a random word, and a word that has it.
+    fn of_word(word: u64) -> Self;
+    fn word(self) -> u64;
 
     #[inline(always)]
     fn least(self, other: Self) -> Self {
@@ -82,9 +82,14 @@ impl Real for f64 {
         sin_cos_of_turns(self)
     }
 
-    #[inline]
-    fn fill(uniforms: &mut [Self], rng: &mut Stream) {
-        rng.fill_uniform(uniforms);
+    #[inline(always)]
+    fn of_word(word: u64) -> Self {
+        (word >> 11) as Self * Self::STEP
+    }
+
+    #[inline(always)]
+    fn word(self) -> u64 {
+        ((self / Self::STEP) as u64) << 11
     }
 }
 
@@ -133,15 +138,23 @@ impl Real for f32 {
         (sign(quarters, sin), sign(quarters.wrapping_add(1), cos))
     }
 
-    #[inline]
-    fn fill(uniforms: &mut [Self], rng: &mut Stream) {
-        rng.fill_uniform_pairs(uniforms);
+    #[inline(always)]
+    fn of_word(word: u64) -> Self {
+        (word >> 40) as i32 as Self * Self::STEP
+    }
+
+    #[inline(always)]
+    fn word(self) -> u64 {
+        ((self / Self::STEP) as u64) << 40
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::Rng;
+
+    use crate::stream::Stream;
 
     /// Against f64's, at every 256th number that there is and at all near the eighths of a turn, where sine and cosine change places. With |t| ≤ π/4: t is rounded
     /// three times and 2π once, 2⁻²² of t or less in all; the first terms left out are 2.4e-8 or less; a result takes three more roundings of at most 2⁻²⁵ each: below 3.5e-7.
@@ -162,8 +175,8 @@ mod tests {
     #[test]
     fn uniform_numbers_lie_on_their_grid() {
         fn on_the_grid<T: Real>() {
-            let mut uniforms = [T::of(2.0); 1000];
-            T::fill(&mut uniforms, &mut Stream::new(1, 0));
+            let mut rng = Stream::new(1, 0);
+            let uniforms: [T; 1000] = std::array::from_fn(|_| T::of_word(rng.next_u64()));
             let odd = uniforms.iter().filter(|u| {
                 let steps = (**u / T::STEP).to_f64();
                 assert!(**u >= T::of(0.0) && **u < T::of(1.0) && steps == steps.floor());

@@ -8,8 +8,8 @@ use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width, power_of_ten};
 use super::{Edition, Figure};
 use crate::check::{Look, Mistake, Probe, Topic, Unbiased};
 use crate::error::Result;
+use crate::estimator::from_fn;
 use crate::hemisphere::Hemisphere;
-use crate::run::from_fn;
 
 /// The relative difference taken for none: half of the smaller bias shown.
 const DELTA: f64 = 5e-3;

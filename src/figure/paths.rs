@@ -7,9 +7,10 @@ use super::{Edition, Figure};
 use crate::box_room::{BoxRoom, Vertex, exact};
 use crate::error::Result;
 use crate::estimate::Estimate;
+use crate::estimator::{Estimator, from_fn};
 use crate::hemisphere::Hemisphere::{Cosine, Uniform};
 use crate::paths::{Bounces, FindLight, Paths, reflected};
-use crate::run::{Budget, Estimator, Run, estimate, from_fn};
+use crate::run::{Budget, Run, estimate};
 use crate::stream::Stream;
 
 /// 4.3: running means of three estimators of the part of two bounces, with the exact value where it is known.

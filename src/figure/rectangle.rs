@@ -3,8 +3,9 @@
 use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
 use super::{Edition, Figure};
 use crate::error::Result;
+use crate::estimator::{Estimator, from_fn};
 use crate::rectangle::{Integrand, Rectangle};
-use crate::run::{Budget, Estimator, estimate, from_fn};
+use crate::run::{Budget, estimate};
 
 /// Points of one measured curve: 4ᵏ evaluations, from 4 to 4⁷.
 const EVALUATIONS: [u64; 7] = [4, 16, 64, 256, 1024, 4096, 16384];

@@ -3,8 +3,9 @@
 use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
 use super::{Edition, Figure};
 use crate::error::Result;
+use crate::estimator::Estimator;
 use crate::roulette::{LightModel, Roulette};
-use crate::run::{Budget, Estimator, estimate};
+use crate::run::{Budget, estimate};
 use crate::stream::Stream;
 
 /// 5.1: P(N = k) for two continuation probabilities, exact as bars and measured as points with their 95 % intervals.

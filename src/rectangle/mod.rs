@@ -5,7 +5,7 @@
 //!
 //! | estimator | one draw | evaluations |
 //! |---|---|---|
-//! | [`ratio`](crate::ratio)`(f, rectangle)` | f(X, Y)/p(X, Y) | 1 |
+//! | [`f_over_p`](crate::f_over_p)`(f, rectangle)` | f(X, Y)/p(X, Y) | 1 |
 //! | [`Rectangle::independent`] | A f(X, Y), the same simplified | 1 |
 //! | [`Rectangle::all_pairs`] | A/n² Σᵢ Σⱼ f(Xᵢ, Yⱼ) | n² |
 //! | [`Rectangle::jittered`] | A/s² Σ f, one point in each cell of an s × s grid | s² |
@@ -22,17 +22,13 @@ mod replicate;
 
 pub use genz::{Family, Genz};
 pub use integrand::Integrand;
-pub(crate) use replicate::scrambled;
-pub use replicate::{AllPairs, Jittered, Sobol};
+pub use replicate::AllPairs;
 
 use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
 
-use crate::density::Density;
 use crate::error::{Result, require};
-use crate::fast::{self, OfPair};
-use crate::run::Estimator;
-use crate::stream::Stream;
+use crate::estimator::{Density, Estimator, from_uniforms};
 
 /// The rectangle [a, b] × [c, d], and the uniform distribution on it.
 ///
@@ -43,10 +39,10 @@ use crate::stream::Stream;
 /// rounded to it. It is exact to the last place of the larger of a and X.
 ///
 /// ```
-/// use unbiased::{Budget, estimate, ratio, rectangle::Rectangle};
+/// use unbiased::{Budget, estimate, f_over_p, rectangle::Rectangle};
 ///
 /// // ∫∫ x² + y² over the sheet's square [−2, 2]², where p = 1/16, is 128/3
-/// let estimate = estimate(&ratio(|[x, y]| x * x + y * y, Rectangle::WORKSHEET), Budget::Draws(100_000), 1)?;
+/// let estimate = estimate(&f_over_p(|[x, y]| x * x + y * y, Rectangle::WORKSHEET), Budget::Draws(100_000), 1)?;
 /// assert!(estimate.z(128.0 / 3.0).unwrap().abs() < 5.0);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
@@ -108,7 +104,7 @@ impl Rectangle {
         self.y
     }
 
-    /// The estimator A f(X, Y) of ∫∫ f: [`ratio`](crate::ratio)`(f, rectangle)` with the constant density 1/A
+    /// The estimator A f(X, Y) of ∫∫ f: [`f_over_p`](crate::f_over_p)`(f, rectangle)` with the constant density 1/A
     /// taken out of the sum.
     ///
     /// On the sheet's square its mean after n draws is ⟨Fₙ⟩ = 16/n Σ f(Xᵢ, Yᵢ). The variance of a draw is A
@@ -123,14 +119,11 @@ impl Rectangle {
     /// assert!(estimate.z(3.1122703197174722).unwrap().abs() < 5.0);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
-    pub fn independent<F: Fn(f64, f64) -> f64 + Sync>(self, f: F) -> Independent<F> {
-        Independent { rectangle: self, f }
-    }
-
-    /// The point that lies at the fraction (u, v) of width and height.
-    #[inline(always)]
-    fn at(&self, u: f64, v: f64) -> [f64; 2] {
-        [self.x_at(u), self.y_at(v)]
+    pub fn independent<F: Fn(f64, f64) -> f64 + Sync>(self, f: F) -> impl Estimator {
+        from_uniforms(move |u| {
+            let [x, y] = self.warp(u);
+            self.area * f(x, y)
+        })
     }
 
     #[inline(always)]
@@ -154,48 +147,24 @@ const NORMAL: &str = "in f64's normal range, from 2.3e-308 to 1.7e308";
 impl Distribution<[f64; 2]> for Rectangle {
     #[inline]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> [f64; 2] {
-        let u: f64 = StandardUniform.sample(rng);
-        let v: f64 = StandardUniform.sample(rng);
-        self.at(u, v)
+        let u = StandardUniform.sample(rng);
+        self.warp([u, StandardUniform.sample(rng)])
     }
 }
 
-impl Density for Rectangle {
+impl Density<2> for Rectangle {
     type Point = [f64; 2];
 
-    #[inline]
+    /// The point that lies at the fraction (u, v) of width and height.
+    #[inline(always)]
+    fn warp(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        [self.x_at(u), self.y_at(v)]
+    }
+
+    #[inline(always)]
     fn pdf(&self, &[x, y]: &[f64; 2]) -> f64 {
         let ([a, b], [c, d]) = (self.x, self.y);
         if (a..=b).contains(&x) && (c..=d).contains(&y) { self.density } else { 0.0 }
-    }
-}
-
-/// The estimator A f(X, Y); see [`Rectangle::independent`].
-#[derive(Debug, Clone, Copy)]
-pub struct Independent<F> {
-    rectangle: Rectangle,
-    f: F,
-}
-
-impl<F: Fn(f64, f64) -> f64> OfPair for Independent<F> {
-    #[inline(always)]
-    fn of_pair(&self, u: f64, v: f64) -> f64 {
-        let [x, y] = self.rectangle.at(u, v);
-        self.rectangle.area * (self.f)(x, y)
-    }
-}
-
-impl<F: Fn(f64, f64) -> f64 + Sync> Estimator for Independent<F> {
-    #[inline]
-    fn draw(&self, rng: &mut Stream) -> f64 {
-        let (u, v) = (rng.uniform(), rng.uniform());
-        rng.count_evaluations(1);
-        self.of_pair(u, v)
-    }
-
-    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
-        fast::fill_by_pairs(draws, rng, self);
-        rng.count_evaluations(draws.len() as u64);
     }
 }
 

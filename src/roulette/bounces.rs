@@ -5,9 +5,9 @@ use rand::distr::{Distribution, StandardUniform};
 
 use super::{P_RR, Roulette, one_minus_power, power};
 use crate::error::{Result, require};
+use crate::estimator::{Estimator, from_uniforms};
 use crate::extended::Extended;
 use crate::fast;
-use crate::run::Estimator;
 use crate::stream::Stream;
 
 /// The law of N. At p_rr = 1 a path never ends: N is infinite, so that every P(N = k) is 0.
@@ -102,7 +102,7 @@ impl Roulette {
     /// ```
     pub fn bounces_by_inversion(&self) -> Result<BouncesByInversion> {
         self.require_an_end()?;
-        Ok(BouncesByInversion { ln_p: self.p_rr.ln() })
+        Ok(BouncesByInversion { per_ln: 1.0 / self.p_rr.ln() })
     }
 
     fn require_an_end(&self) -> Result<f64> {
@@ -145,33 +145,31 @@ impl Estimator for BouncesBySimulation {
 /// at 3.3e17 for p = 1 − 2⁻⁵³, drawn as fast as any.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BouncesByInversion {
-    ln_p: f64,
+    /// 1/ln p
+    per_ln: f64,
 }
 
 impl BouncesByInversion {
-    #[inline]
-    fn bounces_at(&self, u: f64) -> i64 {
-        // at most 53 ln 2/2⁻⁵³ = 3.3e17, and a cast cuts as floor does, but faster; to i64 faster than to u64
-        ((1.0 - u).ln() / self.ln_p) as i64
+    #[inline(always)]
+    fn bounces_at(&self, [u]: [f64; 1]) -> f64 {
+        fast::floor((fast::ln(1.0 - u) * self.per_ln).abs())
     }
 }
 
 impl Distribution<u64> for BouncesByInversion {
     #[inline]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> u64 {
-        self.bounces_at(StandardUniform.sample(rng)) as u64
+        self.bounces_at([StandardUniform.sample(rng)]) as u64
     }
 }
 
 impl Estimator for BouncesByInversion {
     #[inline]
     fn draw(&self, rng: &mut Stream) -> f64 {
-        self.bounces_at(rng.uniform()) as f64
+        from_uniforms(|u| self.bounces_at(u)).draw(rng)
     }
 
     fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
-        rng.fill_uniform(draws);
-        let per_ln = 1.0 / self.ln_p;
-        fast::map(draws, |u| (fast::ln(1.0 - u) * per_ln).abs().floor());
+        from_uniforms(|u| self.bounces_at(u)).fill(rng, draws);
     }
 }

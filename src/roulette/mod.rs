@@ -10,8 +10,8 @@ use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
 
 use crate::error::{Result, require};
+use crate::estimator::Estimator;
 use crate::extended::Extended;
-use crate::run::Estimator;
 use crate::stream::Stream;
 
 mod bounces;

@@ -5,7 +5,8 @@ use std::time::{Duration, Instant};
 use super::{Measured, Rival, Trade};
 use crate::error::Result;
 use crate::estimate::{Estimate, SLICE};
-use crate::run::{Cost, Estimator, walk_block};
+use crate::estimator::Estimator;
+use crate::run::{Cost, walk_block};
 
 /// Batches a rival: one is the median of their times, and two are its quartiles.
 pub(super) const COUNT: u64 = 17;
@@ -162,13 +163,13 @@ mod tests {
 
     use super::*;
     use crate::box_room::{BoxRoom, Scene};
+    use crate::estimator::from_fn;
     use crate::hemisphere::Hemisphere::{Cosine, Uniform};
     use crate::inversion::Exponential;
     use crate::lambertian::Lambertian;
     use crate::paths::{Bounces, FindLight, Paths};
     use crate::rectangle::{Integrand, Rectangle};
     use crate::roulette::LightModel;
-    use crate::run::from_fn;
 
     /// A clock for draws of `each` seconds, which stops for `stop` seconds at the calls named.
     fn clock(each: f64, stop: f64, calls: &[u32]) -> impl FnMut(u64) -> Result<f64> {

@@ -6,7 +6,7 @@ use super::Value;
 use crate::box_room::Scene;
 use crate::estimate::Estimate;
 use crate::figure::{Edition, Figure};
-use crate::run::{Cost, Outcome, Shortfall};
+use crate::run::{Cost, Outcome, Part, Shortfall};
 use crate::trade::Measured;
 
 /// What a row of an answer is.
@@ -34,6 +34,7 @@ pub struct Answer {
     seconds: Option<f64>,
     pilot_never_varied: bool,
     shortfall: Option<Shortfall>,
+    part: Option<Part>,
     note: Option<String>,
     figures: Vec<Figure>,
 }
@@ -60,6 +61,7 @@ impl Answer {
             seconds: None,
             pilot_never_varied: false,
             shortfall: None,
+            part: None,
             note: None,
             figures: Vec::new(),
         }
@@ -106,6 +108,7 @@ impl Answer {
         self.seconds = Some(outcome.elapsed.as_secs_f64());
         self.pilot_never_varied = outcome.pilot_never_varied();
         self.shortfall = outcome.shortfall;
+        self.part = outcome.part.clone();
         self
     }
 
@@ -218,6 +221,11 @@ impl Answer {
         self.shortfall
     }
 
+    /// What makes the whole of it, if it is a shard.
+    pub(super) fn part(&self) -> Option<&Part> {
+        self.part.as_ref()
+    }
+
     pub(super) fn sentence(&self) -> Option<&str> {
         self.note.as_deref()
     }
@@ -226,6 +234,11 @@ impl Answer {
     pub(super) fn figures(&self, edition: Edition) -> impl Iterator<Item = &Figure> {
         self.figures.iter().filter(move |figure| figure.edition() == edition)
     }
+}
+
+/// A row's parameters as JSON.
+pub(super) fn parameters_of(answer: &Answer) -> serde_json::Map<String, serde_json::Value> {
+    answer.parameters.iter().map(|(name, value)| ((*name).into(), value.json())).collect()
 }
 
 #[cfg(test)]

@@ -28,6 +28,7 @@ mod section2;
 mod section3;
 mod section4;
 mod section5;
+mod shards;
 mod value;
 
 use std::process::ExitCode;
@@ -131,7 +132,15 @@ pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
         let asked = Asked::Questions(&questions);
         let Some(options) = Request::read(asked)?.options(asked)? else { return Ok(()) };
         let options = options.for_question(question);
-        options.with_out(|| print::answers(question, &answer(&options)?, &options))
+        let answer = || {
+            let answers = answer(&options)?;
+            if let Some(shards) = &options.shards {
+                shards.belong_to(&answers)?;
+            }
+            print::answers(question, &answers, &options)
+        };
+        // a shard draws nothing
+        if options.shard.is_some() { answer() } else { options.with_out(answer) }
     }))
 }
 
@@ -209,6 +218,7 @@ fn ended(result: Result<()>) -> ExitCode {
             eprintln!("{error}");
             match error {
                 Error::Usage(_)
+                | Error::Parts { .. }
                 | Error::Parameter { .. }
                 | Error::Count { .. }
                 | Error::TooFewDraws { .. } => ExitCode::from(2),

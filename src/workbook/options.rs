@@ -5,18 +5,21 @@ use std::collections::BTreeSet;
 use std::io::IsTerminal;
 use std::mem;
 use std::path::PathBuf;
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use lexopt::{Arg, Parser};
 
 use super::appendix::Beside;
+use super::shards::Shards;
 use super::value::parseable;
 use super::{Answer, Question, Value, print};
 use crate::box_room::Scene;
 use crate::error::{Error, Result};
+use crate::estimator::Estimator;
 use crate::figure::Edition;
-use crate::run::{Budget, Estimator, Outcome, Run};
+use crate::run::{Budget, Outcome, Run};
 
 /// The options of an example.
 #[derive(Debug, Clone)]
@@ -33,6 +36,10 @@ pub struct Options {
     pub json: bool,
     /// For whom.
     pub edition: Edition,
+    /// Which shard of every run, and of how many.
+    pub shard: Option<[u64; 2]>,
+    /// The shards of which every run is put together instead.
+    pub(super) shards: Option<Rc<Shards>>,
     given: Vec<(String, Value)>,
     question: Option<&'static Question>,
 }
@@ -46,6 +53,8 @@ impl Default for Options {
             out: PathBuf::from("worksheet"),
             json: false,
             edition: Edition::Solution,
+            shard: None,
+            shards: None,
             given: Vec::new(),
             question: None,
         }
@@ -107,6 +116,11 @@ impl Request {
                 "seed" => options.seed = whole(&mut line, "--seed")?,
                 "threads" => options.threads = Some(count(&mut line, "--threads")? as usize),
                 "out" => options.out = line.value().map_err(usage)?.into(),
+                "shard" => options.shard = Some(shard(&text(&mut line, "--shard")?)?),
+                "merge" => {
+                    let files: Vec<PathBuf> = line.values().map_err(usage)?.map(PathBuf::from).collect();
+                    options.shards = Some(Rc::new(Shards::read(&files)?));
+                }
                 "edition" => options.edition = edition(&text(&mut line, "--edition")?)?,
                 _ => {
                     let mut known = questions.iter().flat_map(|question| question.parameters);
@@ -120,6 +134,16 @@ impl Request {
                     options.given.push((name, value));
                 }
             }
+        }
+        let cut = options.shard.is_some();
+        if cut && options.shards.is_some() {
+            return Err(Error::Usage("--shard makes a part and --merge the whole: give one of them".into()));
+        } else if (cut || options.shards.is_some()) && questions.len() != 1 {
+            return Err(Error::Usage("--shard and --merge go with the example of one question".into()));
+        } else if cut && !options.json {
+            return Err(Error::Usage("--shard prints what --merge reads: it goes with --json".into()));
+        } else if cut && !matches!(options.budget, None | Some(Budget::Draws(_))) {
+            return Err(Error::Usage("--shard goes with --draws: only their number can be cut".into()));
         }
         Ok(Self::Run(options))
     }
@@ -177,6 +201,14 @@ fn seconds(line: &mut Parser) -> Result<Duration> {
     let seconds = number_above_zero(&given, "--seconds")?;
     let time = Duration::try_from_secs_f64(seconds).ok().filter(|time| !time.is_zero());
     time.ok_or_else(|| Error::Usage(format!("--seconds takes a number from 1e-9 to 1e19, not \"{given}\"")))
+}
+
+/// `3/8`
+fn shard(given: &str) -> Result<[u64; 2]> {
+    let parts = given.split_once('/').and_then(|(k, of)| Some([k.parse().ok()?, of.parse().ok()?]));
+    parts
+        .filter(|[k, of]| (1..=*of).contains(k))
+        .ok_or_else(|| Error::Usage(format!("--shard takes one of 1/N to N/N, not \"{given}\"")))
 }
 
 fn edition(name: &str) -> Result<Edition> {
@@ -256,6 +288,9 @@ impl Options {
     /// # Errors
     /// Those of [`Run::estimate`].
     pub fn run(&self, estimator: &(impl Estimator + ?Sized), draws: u64) -> Result<Outcome> {
+        if let Some(shards) = &self.shards {
+            return shards.next();
+        }
         let start = Instant::now();
         let bar = OnceCell::new();
         let watched = std::io::stderr().is_terminal() && !self.json;
@@ -267,6 +302,9 @@ impl Options {
         let mut run = Run::new(self.seed).max_draws(u64::MAX).max_time(MOST_TIME).progress(&progress);
         if let Some(threads) = self.threads {
             run = run.threads(threads);
+        }
+        if let Some([k, of]) = self.shard {
+            run = run.shard(k, of);
         }
         let outcome = run.estimate(estimator, self.budget.unwrap_or(Budget::Draws(draws)));
         if let Some(bar) = bar.get() {

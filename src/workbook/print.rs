@@ -5,13 +5,20 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::answer::parameters_of;
 use super::appendix::Beside;
 use super::{Answer, Appendix, Kind, Options, Question, shown};
 use crate::error::{Error, Result, rounded};
 use crate::figure::Edition;
+use crate::run::Part;
 
 /// Prints the answers to one question and saves their figures.
 pub(super) fn answers(question: &Question, answers: &[Answer], options: &Options) -> Result<()> {
+    if options.shard.is_some() {
+        let mut shards = answers.iter().filter(|answer| answer.part().is_some());
+        let printed = shards.try_for_each(|answer| json(question, answer, &[], options));
+        return printed.or_else(until_the_pipe_closes);
+    }
     let mut rows = Vec::new();
     for answer in answers.iter().filter(|answer| shown(answer, options.edition)) {
         let mut paths = Vec::new();
@@ -100,17 +107,18 @@ struct Row<'a> {
     seed: Option<u64>,
     seconds: Option<f64>,
     figures: &'a [PathBuf],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    part: Option<&'a Part>,
 }
 
 impl<'a> Row<'a> {
     fn of(answer: &'a Answer, figures: &'a [PathBuf]) -> Self {
-        let parameters = answer.parameters().iter().map(|(name, value)| ((*name).into(), value.json()));
         let estimate = answer.estimate();
         Self {
             question: answer.question(),
             what: answer.what(),
             kind: answer.kind(),
-            parameters: parameters.collect(),
+            parameters: parameters_of(answer),
             truth: answer.exact(),
             estimate: answer.found(),
             std_error: estimate.and_then(|estimate| estimate.std_error()),
@@ -118,6 +126,7 @@ impl<'a> Row<'a> {
             seed: answer.seed(),
             seconds: answer.seconds(),
             figures,
+            part: answer.part(),
         }
     }
 
@@ -313,6 +322,8 @@ pub(super) fn help(questions: &[&Question]) -> Result<()> {
     --out DIR            folder for figures and pages (worksheet)
     --json               one JSON object a line
     --edition NAME       student or solution (solution)
+    --shard K/N          only shard K of N of every run, for --merge (with --json)
+    --merge FILE...      puts every run together from what its shards printed
     --hint               a nudge that does not tell the answer
 ";
     for question in questions {

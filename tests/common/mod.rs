@@ -38,6 +38,11 @@ pub fn furnace(albedo: f64) -> unbiased::box_room::Scene {
     }
 }
 
+/// The next number of each of the next draws.
+pub fn fill_uniform(rng: &mut unbiased::Stream, uniforms: &mut [f64]) {
+    unbiased::Estimator::fill(&unbiased::from_uniforms(|[u]| u), rng, uniforms);
+}
+
 /// A generator of one word for ever.
 pub struct Stuck(pub u64);
 

@@ -7,9 +7,9 @@ use super::probe::Setup;
 use super::{Probe, Topic, roulette};
 use crate::box_room::BoxRoom;
 use crate::error::{Error, Result};
+use crate::estimator::{Estimator, from_fn};
 use crate::hemisphere::Direction;
 use crate::rectangle::Rectangle;
-use crate::run::{Estimator, from_fn};
 use crate::stream::Stream;
 
 /// Someone's estimator, right or wrong, of a given topic.

@@ -5,9 +5,9 @@ use std::sync::LazyLock;
 
 use super::{Attempt, Mistake, Probe, Setup, Words, words};
 use crate::check::exactly;
+use crate::estimator::from_fn;
 use crate::hemisphere::Direction;
 use crate::lambertian::Lambertian;
-use crate::run::from_fn;
 
 /// A light of the probes, by which mistakes that look alike under a constant one are told apart. Nothing comes from below the horizon.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

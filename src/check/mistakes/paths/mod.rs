@@ -12,7 +12,7 @@ use glam::DVec3;
 use super::{Attempt, Mistake, Probe, Setup, Words};
 use crate::box_room::exact::{over_the_light, over_the_unit, over_the_walls, seen};
 use crate::box_room::{BoxRoom, Face, Scene, Vertex, nearest, visible};
-use crate::density::Density;
+use crate::estimator::Density;
 use crate::hemisphere::{Direction, Hemisphere};
 use crate::stream::Stream;
 

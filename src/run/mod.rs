@@ -1,99 +1,27 @@
 //! Running an estimator: draws in blocks, on all cores, with the same bits for any number of threads.
 //!
 //! A run of n draws is cut into blocks: 32 to 63 of them, or more where they would be larger than 2¹⁴ draws. Block b draws
-//! from [`Stream::new`]`(seed, b)` and the blocks' estimates are merged in the order of b, so neither the number of threads
-//! nor their timing can be seen in the result. Memory does not grow with the number of draws.
+//! from [`Stream::new`]`(seed, b)` and the blocks' estimates are merged along a fixed binary tree over b, so neither the number of
+//! threads nor their timing can be seen in the result, nor whether it was made in one piece or put together from [shards](Run::shard)
+//! of several machines. Memory does not grow with the number of draws.
 
 use std::fmt;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, require, require_count, takes};
 use crate::estimate::{Estimate, SLICE};
+use crate::estimator::Estimator;
 use crate::fast;
 use crate::stream::{Stream, mix};
 
-/// Something that can be drawn: each draw is one independent, unbiased value of the quantity estimated.
-///
-/// ```
-/// use unbiased::{Estimator, Stream};
-///
-/// /// 4·[x² + y² ≤ 1] for a random point of the unit square: an unbiased estimate of π.
-/// struct Quarter;
-///
-/// impl Estimator for Quarter {
-///     fn draw(&self, rng: &mut Stream) -> f64 {
-///         let (x, y) = (rng.uniform(), rng.uniform());
-///         if x * x + y * y <= 1.0 { 4.0 } else { 0.0 }
-///     }
-/// }
-///
-/// let estimate = unbiased::estimate(&Quarter, unbiased::Budget::Draws(100_000), 1)?;
-/// assert!(estimate.z(std::f64::consts::PI).unwrap().abs() < 5.0);
-/// # Ok::<(), unbiased::Error>(())
-/// ```
-pub trait Estimator: Sync {
-    /// One draw.
-    fn draw(&self, rng: &mut Stream) -> f64;
+mod part;
 
-    /// Fills `draws` with independent draws. An estimator that can make many side by side overrides this;
-    /// the values may then differ from those of repeated [`draw`](Self::draw), the distribution may not.
-    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
-        for draw in draws {
-            *draw = self.draw(rng);
-        }
-    }
-}
-
-impl<E: Estimator + ?Sized> Estimator for &E {
-    fn draw(&self, rng: &mut Stream) -> f64 {
-        (**self).draw(rng)
-    }
-
-    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
-        (**self).fill(rng, draws);
-    }
-}
-
-impl<E: Estimator + ?Sized> Estimator for Box<E>
-where
-    Box<E>: Sync,
-{
-    fn draw(&self, rng: &mut Stream) -> f64 {
-        (**self).draw(rng)
-    }
-
-    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
-        (**self).fill(rng, draws);
-    }
-}
-
-/// An estimator whose draw is what a closure returns.
-///
-/// ```
-/// use unbiased::{Budget, estimate, from_fn};
-///
-/// let square = from_fn(|rng| rng.uniform().powi(2)); // E[U²] = 1/3
-/// let estimate = estimate(&square, Budget::Draws(10_000), 7)?;
-/// assert!(estimate.z(1.0 / 3.0).unwrap().abs() < 5.0);
-/// # Ok::<(), unbiased::Error>(())
-/// ```
-pub fn from_fn<F: Fn(&mut Stream) -> f64 + Sync>(f: F) -> FromFn<F> {
-    FromFn(f)
-}
-
-/// An estimator made of a closure; see [`from_fn`].
-#[derive(Debug, Clone, Copy)]
-pub struct FromFn<F>(F);
-
-impl<F: Fn(&mut Stream) -> f64 + Sync> Estimator for FromFn<F> {
-    #[inline]
-    fn draw(&self, rng: &mut Stream) -> f64 {
-        (self.0)(rng)
-    }
-}
+use part::Blocks;
+pub use part::{Part, merge};
 
 /// When a run is over.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -132,7 +60,7 @@ pub fn estimate(estimator: &(impl Estimator + ?Sized), budget: Budget, seed: u64
 }
 
 /// What a run took, in units that do not depend on the machine.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Cost {
     /// Random numbers (words of 64 bits) that the streams gave.
     pub random_numbers: u64,
@@ -141,7 +69,7 @@ pub struct Cost {
 }
 
 /// What came of a run.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
     /// The estimate.
     pub estimate: Estimate,
@@ -155,6 +83,8 @@ pub struct Outcome {
     pub pilot: Option<Estimate>,
     /// By how much it falls short of the error asked for, where [`Run::max_time`] cut it short.
     pub shortfall: Option<Shortfall>,
+    /// If the run was a [shard](Run::shard): what makes the whole run, with the others.
+    pub part: Option<Part>,
 }
 
 /// What an error would have taken that a run had no time for. It displays as a clause:
@@ -206,12 +136,21 @@ pub struct Run<'a> {
     max_time: Option<Duration>,
     progress: Option<&'a Progress<'a>>,
     clock: Option<&'a Clock<'a>>,
+    shard: Option<[u64; 2]>,
 }
 
 impl<'a> Run<'a> {
     /// A run with this seed, on all cores, of at most 10⁹ draws where the budget names an error.
     pub fn new(seed: u64) -> Self {
-        Self { seed, threads: None, max_draws: 1_000_000_000, max_time: None, progress: None, clock: None }
+        Self {
+            seed,
+            threads: None,
+            max_draws: 1_000_000_000,
+            max_time: None,
+            progress: None,
+            clock: None,
+            shard: None,
+        }
     }
 
     /// Uses this many threads instead of one a core; the result of the same draws is the same.
@@ -258,50 +197,65 @@ impl<'a> Run<'a> {
         self
     }
 
+    /// Takes only shard k of `of` of the run: of as many neighbouring blocks as the others. Its outcome has a [`Part`]; [`merge`] makes the
+    /// whole run's outcome of all parts, with the bits that it has in one piece.
+    pub fn shard(mut self, k: u64, of: u64) -> Self {
+        self.shard = Some([k, of]);
+        self
+    }
+
     /// Runs `estimator` until `budget` is spent.
     ///
     /// # Errors
-    /// If the budget is empty or out of reach, the threads cannot be started, a draw is NaN or infinite, or a time is to be
+    /// If a shard is not one of 1 to the number of shards, or is asked for with a budget that is not one of draws; if the budget is empty or out of reach, the threads cannot be started, a draw is NaN or infinite, or a time is to be
     /// kept by a clock that stands still or goes back.
     pub fn estimate(&self, estimator: &(impl Estimator + ?Sized), budget: Budget) -> Result<Outcome> {
         let watch = Watch::start(self.clock);
-        let mut blocks = Blocks { estimator, workers: self.workers()?, cost: Cost::default() };
-        let by_count = |estimate| (estimate, None, None);
-        let (estimate, pilot, shortfall) = match budget {
+        if let Some([k, of]) = self.shard {
+            require_count("the shard", k, (1..=of).contains(&k), "from 1 to the number of shards")?;
+        }
+        if self.shard.is_some() && !matches!(budget, Budget::Draws(_)) {
+            return Err(Error::Parts {
+                reason: "only a run of a given number of draws can be cut into shards".into(),
+            });
+        }
+        let mut work = Work { estimator, workers: self.workers()?, cost: Cost::default() };
+        let by_count = |blocks: Blocks| (blocks, None, None);
+        let (blocks, pilot, shortfall) = match budget {
             Budget::Draws(draws) => {
                 require_count("the number of draws", draws, draws > 0, "positive")?;
-                by_count(self.run_draws(&mut blocks, &watch, draws)?)
+                by_count(self.run_draws(&mut work, &watch, draws)?)
             }
             Budget::Time(time) => {
                 let ok = !time.is_zero() && time <= LONGEST;
                 require("the time in seconds", time.as_secs_f64(), ok, "positive and at most 1e6 (12 days)")?;
-                let draws = self.draws_in(&mut blocks, &watch, time)?;
-                by_count(self.run_draws(&mut blocks, &watch, draws)?)
+                let draws = self.draws_in(&mut work, &watch, time)?;
+                by_count(self.run_draws(&mut work, &watch, draws)?)
             }
             Budget::StdError(target) => {
                 require("the std error", target, target > 0.0, "positive")?;
-                let pilot = self.pilot(&mut blocks, &watch, |_, std_error| std_error > 0.0)?;
+                let pilot = self.pilot(&mut work, &watch, |_, std_error| std_error > 0.0)?;
                 let (draws, shortfall) = self.needed(&pilot, &watch, target)?;
-                (self.run_draws(&mut blocks, &watch, draws)?, Some(pilot), shortfall)
+                (self.run_draws(&mut work, &watch, draws)?, Some(pilot), shortfall)
             }
             Budget::RelativeError(target) => {
                 require("the relative error", target, target > 0.0, "positive")?;
-                let pilot = self.pilot(&mut blocks, &watch, |mean, std_error| {
+                let pilot = self.pilot(&mut work, &watch, |mean, std_error| {
                     std_error > 0.0 && std_error < 0.25 * mean.abs()
                 })?;
                 let target = target * pilot.mean().abs();
                 let (draws, shortfall) = self.needed(&pilot, &watch, target)?;
-                (self.run_draws(&mut blocks, &watch, draws)?, Some(pilot), shortfall)
+                (self.run_draws(&mut work, &watch, draws)?, Some(pilot), shortfall)
             }
         };
-        Ok(Outcome {
-            estimate,
-            seed: self.seed,
-            cost: blocks.cost,
-            elapsed: watch.elapsed(),
-            pilot,
-            shortfall,
-        })
+        let (estimate, seed, cost, elapsed) = (blocks.estimate(), self.seed, work.cost, watch.elapsed());
+        let part = match budget {
+            Budget::Draws(draws) if self.shard.is_some() => {
+                Some(Part::of(seed, draws, blocks, cost, elapsed))
+            }
+            _ => None,
+        };
+        Ok(Outcome { estimate, seed, cost, elapsed, pilot, shortfall, part })
     }
 
     fn workers(&self) -> Result<Workers> {
@@ -320,38 +274,41 @@ impl<'a> Run<'a> {
 
     fn run_draws<E: Estimator + ?Sized>(
         &self,
-        blocks: &mut Blocks<'_, E>,
+        work: &mut Work<'_, E>,
         watch: &Watch<'_>,
         draws: u64,
-    ) -> Result<Estimate> {
-        let mut estimate = Estimate::new();
-        let (mut next, mut batch) = (0, FIRST_BATCH);
-        while estimate.draws() < draws {
+    ) -> Result<Blocks> {
+        let [k, of] = self.shard.unwrap_or([1, 1]).map(u128::from);
+        let all = u128::from(draws.div_ceil(block_size(draws)));
+        let [mut next, end] = [k - 1, k].map(|k| (all * k / of) as u64);
+        let (mut blocks, mut batch) = (Blocks::from(next), FIRST_BATCH);
+        while next < end {
             let start = watch.elapsed();
-            blocks.extend(&mut estimate, self.seed, next..next.saturating_add(batch), draws)?;
-            next = next.saturating_add(batch);
-            self.report(&estimate, Some(draws));
+            let until = next.saturating_add(batch).min(end);
+            work.extend(&mut blocks, self.seed, next..until, draws)?;
+            next = until;
+            self.report(blocks.draws(), draws);
             // few enough for progress to be seen, and enough to keep all cores busy
             if watch.elapsed().saturating_sub(start) < BETWEEN_LOOKS {
                 batch = (2 * batch).min(LARGEST_BATCH);
             }
         }
-        Ok(estimate)
+        Ok(blocks)
     }
 
     /// How many draws `time` has room for, by the pace at which all threads draw from streams of their own for a tenth of it.
     /// Those draws are discarded: what decides on the number says nothing of the values that count.
     fn draws_in<E: Estimator + ?Sized>(
         &self,
-        blocks: &mut Blocks<'_, E>,
+        work: &mut Work<'_, E>,
         watch: &Watch<'_>,
         time: Duration,
     ) -> Result<u64> {
         let (start, seed) = (watch.elapsed(), mix(self.seed ^ PILOT));
         let until = start + time.saturating_sub(start) / 10;
-        let estimator = blocks.estimator;
+        let estimator = work.estimator;
         let pace = |thread: usize| pace(estimator, seed, thread as u64, watch, [start, until]);
-        let paces = match &blocks.workers {
+        let paces = match &work.workers {
             Workers::Caller => vec![pace(0)],
             Workers::AllCores => rayon::broadcast(|context| pace(context.index())),
             Workers::Own(pool) => pool.broadcast(|context| pace(context.index())),
@@ -360,7 +317,7 @@ impl<'a> Run<'a> {
         for pace in paces {
             let (draws_in_a_second, cost) = pace?;
             draws_per_second += draws_in_a_second;
-            blocks.cost.add(cost);
+            work.cost.add(cost);
         }
         let left = time.saturating_sub(watch.elapsed()).as_secs_f64();
         // a float-to-int cast saturates
@@ -371,7 +328,7 @@ impl<'a> Run<'a> {
     /// variance only up to [`STILL`].
     fn pilot<E: Estimator + ?Sized>(
         &self,
-        blocks: &mut Blocks<'_, E>,
+        work: &mut Work<'_, E>,
         watch: &Watch<'_>,
         enough: impl Fn(f64, f64) -> bool,
     ) -> Result<Estimate> {
@@ -379,11 +336,11 @@ impl<'a> Run<'a> {
         let late = |part: f64| self.max_time.is_some_and(|time| watch.elapsed() >= time.mul_f64(part));
         for stage in 0.. {
             let draws = pilot.draws().max(FIRST_STAGE).min(self.max_draws.max(2) - pilot.draws());
-            let mut more = Estimate::new();
+            let mut more = Blocks::from(0);
             let seed = mix(self.seed ^ PILOT.wrapping_add(stage));
-            blocks.extend(&mut more, seed, 0..u64::MAX, draws)?;
-            pilot.merge(&more);
-            let work = pilot.draws().max(blocks.cost.work() / 16);
+            work.extend(&mut more, seed, 0..u64::MAX, draws)?;
+            pilot.merge(&more.estimate());
+            let work = pilot.draws().max(work.cost.work() / 16);
             let std_error = pilot.std_error().unwrap_or(0.0);
             let long_enough = work >= LONG && enough(pilot.mean(), std_error);
             let still = std_error == 0.0 && work >= STILL;
@@ -420,9 +377,9 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn report(&self, estimate: &Estimate, total: Option<u64>) {
+    fn report(&self, draws: u64, total: u64) {
         if let Some(progress) = self.progress {
-            progress(estimate.draws(), total);
+            progress(draws, Some(total));
         }
     }
 }
@@ -467,16 +424,16 @@ enum Workers {
     Own(rayon::ThreadPool),
 }
 
-/// The blocks of one estimator's run, and what they have cost so far.
-struct Blocks<'e, E: ?Sized> {
+/// What is run, by whom, and what it has cost so far.
+struct Work<'e, E: ?Sized> {
     estimator: &'e E,
     workers: Workers,
     cost: Cost,
 }
 
-impl<E: Estimator + ?Sized> Blocks<'_, E> {
-    /// Takes these blocks of a run of `draws` draws into `estimate`.
-    fn extend(&mut self, estimate: &mut Estimate, seed: u64, range: Range<u64>, draws: u64) -> Result<()> {
+impl<E: Estimator + ?Sized> Work<'_, E> {
+    /// Takes these blocks of a run of `draws` draws.
+    fn extend(&mut self, blocks: &mut Blocks, seed: u64, range: Range<u64>, draws: u64) -> Result<()> {
         let size = block_size(draws);
         let estimator = self.estimator;
         let one = |block| one_block(estimator, seed, block, size.min(draws - block * size));
@@ -493,7 +450,7 @@ impl<E: Estimator + ?Sized> Blocks<'_, E> {
         };
         for result in results {
             let (of_block, cost) = result?;
-            estimate.merge(&of_block);
+            blocks.push(&of_block);
             self.cost.add(cost);
         }
         Ok(())

@@ -1,0 +1,136 @@
+//! Parts of a run, and the whole that they make: the blocks' estimates along a fixed binary tree.
+
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Cost, Outcome, block_size};
+use crate::error::{Error, Result};
+use crate::estimate::Estimate;
+
+/// One shard of a run: what its blocks gave, to the last bit, so that [`merge`] can make the whole run of all its shards, wherever they ran.
+///
+/// As JSON it is small: some numbers, and at most two estimates for each doubling of the number of blocks.
+///
+/// ```
+/// use unbiased::{Budget, Run, inversion::Exponential, merge};
+///
+/// let (exponential, draws) = (Exponential::new(0.37)?, Budget::Draws(10_000));
+/// let shards = [1, 2, 3].map(|k| Run::new(1).shard(k, 3).estimate(&exponential, draws));
+/// let parts: Vec<_> = shards.into_iter().filter_map(|shard| shard.ok()?.part).collect();
+/// let whole = Run::new(1).estimate(&exponential, draws)?;
+/// assert_eq!(merge(&parts)?.estimate, whole.estimate);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Part {
+    seed: u64,
+    /// Of the whole run.
+    draws: u64,
+    blocks: Blocks,
+    cost: Cost,
+    seconds: f64,
+}
+
+impl Part {
+    pub(super) fn of(seed: u64, draws: u64, blocks: Blocks, cost: Cost, elapsed: Duration) -> Self {
+        Self { seed, draws, blocks, cost, seconds: elapsed.as_secs_f64() }
+    }
+}
+
+/// Puts a run together from all of its shards, in any order: the estimate has the bits of a run that was never cut.
+///
+/// The cost and the time are the sums of theirs.
+///
+/// # Errors
+/// If the shards are of runs with other seeds or numbers of draws, one is missing, or one is there twice. Whether they are of the
+/// same estimator only their files' names can tell.
+pub fn merge(parts: &[Part]) -> Result<Outcome> {
+    let refused = |reason: String| Err(Error::Parts { reason });
+    let Some(Part { seed, draws, .. }) = parts.first() else {
+        return refused("there are none".into());
+    };
+    for part in parts {
+        if part.seed != *seed {
+            return refused(format!("one has seed {}, another {seed}", part.seed));
+        } else if part.draws != *draws {
+            return refused(format!("one is of a run of {} draws, another of {draws}", part.draws));
+        }
+    }
+    let mut parts: Vec<&Part> = parts.iter().collect();
+    parts.sort_by_key(|part| (part.blocks.first, part.blocks.end));
+    let (mut blocks, mut cost, mut seconds) = (Blocks::from(0), Cost::default(), 0.0);
+    for part in parts {
+        if part.blocks.first < blocks.end {
+            return refused(format!("block {} is there twice", part.blocks.first));
+        } else if part.blocks.first > blocks.end {
+            return refused(format!("block {} is missing", blocks.end));
+        }
+        blocks.append(&part.blocks);
+        cost.add(part.cost);
+        seconds += part.seconds;
+    }
+    let estimate = blocks.estimate();
+    let all = draws.div_ceil(block_size(*draws));
+    if blocks.end != all {
+        return refused(format!("block {} is missing", blocks.end));
+    } else if estimate.draws() != *draws {
+        return refused(format!("they have {} draws, not {draws}", estimate.draws()));
+    }
+    let elapsed = Duration::try_from_secs_f64(seconds).unwrap_or_default();
+    Ok(Outcome { estimate, seed: *seed, cost, elapsed, pilot: None, shortfall: None, part: None })
+}
+
+/// Neighbouring blocks, as few estimates as a binary tree over all block numbers has for them: node j of level l holds blocks
+/// j·2ˡ to (j + 1)·2ˡ − 1, merged from its two halves. So the sums of a run have the same roundings, however its blocks are cut into shards.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Blocks {
+    first: u64,
+    end: u64,
+    nodes: Vec<(u32, Estimate)>,
+}
+
+impl Blocks {
+    /// None yet, and this one next.
+    pub fn from(first: u64) -> Self {
+        Self { first, end: first, nodes: Vec::new() }
+    }
+
+    /// Takes in the next block.
+    pub fn push(&mut self, estimate: &Estimate) {
+        self.push_node(0, *estimate);
+    }
+
+    fn push_node(&mut self, mut level: u32, mut estimate: Estimate) {
+        // the node before is the left half of one that this completes
+        let begins = |end: u64, level: u32| end.checked_shr(level).unwrap_or(0);
+        let mut index = begins(self.end, level);
+        while let Some((_, before)) = self.nodes.pop_if(|(other, _)| *other == level && index % 2 == 1) {
+            estimate = merged(before, &estimate);
+            (level, index) = (level + 1, index / 2);
+        }
+        self.nodes.push((level, estimate));
+        self.end = (index + 1).checked_shl(level).unwrap_or(u64::MAX);
+    }
+
+    fn append(&mut self, next: &Self) {
+        for (level, estimate) in &next.nodes {
+            self.push_node(*level, *estimate);
+        }
+    }
+
+    /// Of all its blocks.
+    pub fn estimate(&self) -> Estimate {
+        let last_first = self.nodes.iter().rev().map(|(_, estimate)| *estimate);
+        last_first.reduce(|right, left| merged(left, &right)).unwrap_or_default()
+    }
+
+    pub fn draws(&self) -> u64 {
+        self.nodes.iter().fold(0, |draws, (_, estimate)| draws.saturating_add(estimate.draws()))
+    }
+}
+
+fn merged(mut left: Estimate, right: &Estimate) -> Estimate {
+    left.merge(right);
+    left
+}
