@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use rand::distr::Distribution;
 use unbiased::hemisphere::{Direction, Hemisphere};
 use unbiased::lambertian::{CosinePower, Lambertian, Light};
+use unbiased::placement::sobol;
 use unbiased::workbook::{self, Answer, Options};
 use unbiased::{Result, f_over_p, figure, from_fn};
 
@@ -40,6 +41,8 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
             .outcome(&options.run(&general, 1_000_000)?)
             .figure(figure::directions(Hemisphere::Uniform, 600, options.seed)?),
         row("reflected radiance, simplified").outcome(&options.run(&simplified, 1_000_000)?),
+        row("reflected radiance, sets of 256 Sobol points")
+            .outcome(&options.run(&sobol(&general, 256)?, 4000)?),
         row("cos θ forgotten").demonstration().outcome(&options.run(&without_cosine, 1_000_000)?),
         row("the whole sphere's density").demonstration().outcome(&options.run(&half_density, 1_000_000)?),
     ])

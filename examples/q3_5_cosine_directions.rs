@@ -8,6 +8,7 @@ use rand::distr::Distribution;
 use unbiased::check::Topic;
 use unbiased::hemisphere::{Direction, Hemisphere};
 use unbiased::lambertian::{CosinePower, Lambertian, Light};
+use unbiased::placement::sobol;
 use unbiased::workbook::{self, Answer, Options};
 use unbiased::{Result, f_over_p, figure, from_fn};
 
@@ -41,6 +42,8 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
             .figure(figure::wealth(options.seed)?)
             .figure(figure::mistakes(Topic::Hemisphere)?),
         row("reflected radiance, simplified").outcome(&options.run(&simplified, 1_000_000)?),
+        row("reflected radiance, sets of 256 Sobol points")
+            .outcome(&options.run(&sobol(&general, 256)?, 4000)?),
         row("the formula changed, the directions still uniform")
             .demonstration()
             .outcome(&options.run(&only_formula, 1_000_000)?),

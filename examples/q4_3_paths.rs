@@ -9,6 +9,7 @@ use unbiased::box_room::BoxRoom;
 use unbiased::check::Topic;
 use unbiased::hemisphere::Hemisphere::{Cosine, Uniform};
 use unbiased::paths::{Bounces, FindLight, Paths, reflected};
+use unbiased::placement::sobol;
 use unbiased::workbook::{self, Answer, Options};
 use unbiased::{Estimator, Result, figure};
 
@@ -33,7 +34,9 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
     let mut answers = vec![drawings];
     let mut add =
         |what: &str, estimator: &dyn Estimator, truth: Option<f64>, caution: Option<String>| -> Result<()> {
-            let mut row = Answer::new("4.3", what).outcome(&options.run(estimator, 1_000_000)?);
+            // a set of points is one draw
+            let draws = if what.contains("Sobol") { 4000 } else { 1_000_000 };
+            let mut row = Answer::new("4.3", what).outcome(&options.run(estimator, draws)?);
             if let Some(truth) = truth {
                 row = row.truth(truth);
             }
@@ -52,6 +55,12 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
             // the sheet's estimator as it stands, with L_o(p_j) known
             let known = reflected(room, Cosine, |p_j, _| room.direct(p_j));
             add("K-bounce part, L_o(p_j) known", &known, truth, None)?;
+            add(
+                "K-bounce part, L_o(p_j) known, sets of 256 Sobol points",
+                &sobol(&known, 256)?,
+                truth,
+                None,
+            )?;
         }
         if k > 0 {
             let paths = once_less(FindLight::BySampling)?;
@@ -72,6 +81,7 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
         let truth = if k <= 2 { all_known } else { None };
         let paths = Paths::new(room, Bounces::UpTo(k), Cosine, FindLight::BySampling)?;
         add("cumulative", &paths, truth, paths.caution())?;
+        add("cumulative, sets of 256 Sobol points", &sobol(paths, 256)?, truth, paths.caution())?;
     } else {
         for (what, bounces) in [
             ("cumulative", Bounces::AllByWeight),

@@ -5,9 +5,10 @@
 
 use std::process::ExitCode;
 
+use unbiased::placement::sobol;
 use unbiased::roulette::{LightModel, Roulette};
 use unbiased::workbook::{self, Answer, Options};
-use unbiased::{Result, figure};
+use unbiased::{Estimator, Result, figure};
 
 /// The answers, as the options ask.
 pub fn answer(options: &Options) -> Result<Vec<Answer>> {
@@ -37,18 +38,20 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
             .parameter("visibility", model.visibility())
             .truth(model.mean())
     };
-    let with_roulette = |q: f64| -> Result<Answer> {
-        let paths = model.roulette(q)?;
-        let row =
-            row("light, paths ended by roulette").parameter("q", q).outcome(&options.run(&paths, 1_000_000)?);
-        Ok(if paths.variance().is_finite() { row } else { row.demonstration() })
+    let with_roulette = |what, q: f64, estimator: &dyn Estimator, draws| -> Result<Answer> {
+        let row = row(what).parameter("q", q).outcome(&options.run(estimator, draws)?);
+        Ok(if model.roulette(q)?.variance().is_finite() { row } else { row.demonstration() })
     };
-    answers.push(with_roulette(q)?);
+    let ended = "light, paths ended by roulette";
+    answers.push(with_roulette(ended, q, &paths, 1_000_000)?);
+    let placed = sobol(paths, 256)?;
+    answers.push(with_roulette("the same, sets of 256 Sobol points", q, &placed, 4000)?);
     let best = model.optimum();
     if best > 0.0 && best < 1.0 {
-        answers.push(with_roulette(best)?.note(format!(
+        let at_best = model.roulette(best)?;
+        answers.push(with_roulette(ended, best, &at_best, 1_000_000)?.note(format!(
             "At q* = {best:.4} variance × cost is least: {:.2}, against {:.2} at q = {q}.",
-            model.roulette(best)?.variance() * model.roulette(best)?.cost(),
+            at_best.variance() * at_best.cost(),
             paths.variance() * paths.cost(),
         )));
     }

@@ -208,7 +208,12 @@ fn a_draw_that_is_not_finite_ends_the_run_and_is_named() {
         assert_eq!(value.to_bits(), bad.to_bits());
         // the name is right: the same stream gives the same draw there, and none before it
         let mut rng = Stream::new(seed, block);
-        let position = (0..).find(|_| !sometimes.draw(&mut rng).is_finite()).unwrap();
+        let mut finite = || {
+            let finite = sometimes.draw(&mut rng).is_finite();
+            rng.next_draw();
+            finite
+        };
+        let position = (0..).find(|_| !finite()).unwrap();
         assert_eq!(position, draw);
     }
 }
@@ -410,7 +415,7 @@ fn a_run_uses_fill_through_references_and_boxes() {
     assert_eq!(estimate(&&Wide, Budget::Draws(100_000), common::seed(10)).unwrap(), direct);
 }
 
-/// A run of n draws has blocks of the largest power of two up to n/32, and up to 2¹⁴.
+/// A run of n draws has blocks of the largest power of two up to n/32, and up to 2¹⁴, merged two by two.
 #[test]
 fn blocks_are_cut_by_the_number_of_draws() {
     let uniform = from_fn(|rng| rng.uniform());
@@ -418,13 +423,22 @@ fn blocks_are_cut_by_the_number_of_draws() {
     for (draws, size) in
         [(1u64, 1), (63, 1), (64, 2), (65_535, 1024), (65_536, 2048), (1 << 20, 1 << 14), (3 << 20, 1 << 14)]
     {
-        let mut expected = Estimate::new();
-        for block in 0..draws.div_ceil(size) {
-            let mut rng = Stream::new(seed, block);
-            let own = size.min(draws - block * size);
-            expected.merge(&(0..own).map(|_| rng.uniform()).collect());
+        let mut estimates: Vec<Estimate> = (0..draws.div_ceil(size))
+            .map(|block| {
+                let mut own = vec![0.0; size.min(draws - block * size) as usize];
+                uniform.fill(&mut Stream::new(seed, block), &mut own);
+                Estimate::from_draws(&own)
+            })
+            .collect();
+        while estimates.len() > 1 {
+            let pairs = estimates.chunks(2).map(|pair| {
+                let mut both = pair[0];
+                pair[1..].iter().for_each(|right| both.merge(right));
+                both
+            });
+            estimates = pairs.collect();
         }
-        assert_eq!(estimate(&uniform, Budget::Draws(draws), seed).unwrap(), expected, "{draws}");
+        assert_eq!(estimate(&uniform, Budget::Draws(draws), seed).unwrap(), estimates[0], "{draws}");
     }
 }
 

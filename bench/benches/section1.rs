@@ -6,7 +6,7 @@ use rand_distr::{Distribution, Exp1};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use unbiased::Stream;
 use unbiased::inversion::Exponential;
-use unbiased_bench::{SLICE, Uniforms, sum_of_drawn, sum_of_filled};
+use unbiased_bench::{SLICE, sum_of_drawn, sum_of_filled, uniforms};
 
 fn main() {
     divan::main();
@@ -15,7 +15,7 @@ fn main() {
 #[divan::bench]
 fn uniform_numbers(bencher: Bencher) {
     let mut rng = Stream::new(1, 0);
-    bencher.bench_local(|| sum_of_filled(&Uniforms(1), &mut rng, 1));
+    bencher.bench_local(|| sum_of_filled(&uniforms::<1>(), &mut rng, 1));
 }
 
 #[divan::bench]

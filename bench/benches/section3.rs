@@ -3,7 +3,7 @@
 use divan::Bencher;
 use unbiased::Stream;
 use unbiased::lambertian::{CosinePower, Lambertian, Light};
-use unbiased_bench::{Uniforms, sum_of_drawn, sum_of_filled};
+use unbiased_bench::{sum_of_drawn, sum_of_filled, uniforms};
 
 fn main() {
     divan::main();
@@ -12,7 +12,7 @@ fn main() {
 #[divan::bench]
 fn uniform_numbers(bencher: Bencher) {
     let mut rng = Stream::new(1, 0);
-    bencher.bench_local(|| sum_of_filled(&Uniforms(2), &mut rng, 1));
+    bencher.bench_local(|| sum_of_filled(&uniforms::<2>(), &mut rng, 1));
 }
 
 #[divan::bench]

@@ -1,6 +1,6 @@
 //! What the benchmarks share: draws many at a time, and summed.
 
-use unbiased::{Estimator, Stream};
+use unbiased::{Estimator, Stream, from_uniforms};
 
 /// Draws that stay in the first-level cache, as in a run.
 pub const SLICE: usize = 1024;
@@ -27,17 +27,7 @@ pub fn sum_of_drawn(estimator: &(impl Estimator + ?Sized), rng: &mut Stream, sli
     (0..slices * SLICE).map(|_| estimator.draw(rng)).sum()
 }
 
-/// As many uniform numbers as an estimator takes for each draw, and nothing else.
-pub struct Uniforms(pub usize);
-
-impl Estimator for Uniforms {
-    fn draw(&self, rng: &mut Stream) -> f64 {
-        (0..self.0).map(|_| rng.uniform()).sum()
-    }
-
-    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
-        for _ in 0..self.0 {
-            rng.fill_uniform(draws);
-        }
-    }
+/// As many uniform numbers as an estimator takes for each draw, and their sum.
+pub fn uniforms<const N: usize>() -> impl Estimator {
+    from_uniforms(|u: [f64; N]| u.iter().sum())
 }

@@ -20,7 +20,7 @@ use unbiased::paths::{Bounces, FindLight, Paths};
 use unbiased::rectangle::Rectangle;
 use unbiased::roulette::Roulette;
 use unbiased::{Budget, Estimator, Run, Stream, from_fn};
-use unbiased_bench::{SLICE, Uniforms, sum_of_drawn, sum_of_filled};
+use unbiased_bench::{SLICE, sum_of_drawn, sum_of_filled, uniforms};
 
 const SLICES: usize = 64;
 const TURNS: usize = 3;
@@ -80,8 +80,8 @@ fn ours(best: &mut Best) {
     let uniform = cube.uniform_estimator(|direction| 1.0 + direction.vector().x);
     let bounces = Roulette::new(black_box(0.8)).unwrap().bounces_by_inversion().unwrap();
     let rows: [(&str, &dyn Estimator); 7] = [
-        ("one uniform", &Uniforms(1)),
-        ("two uniforms", &Uniforms(2)),
+        ("one uniform", &uniforms::<1>()),
+        ("two uniforms", &uniforms::<2>()),
         ("exponential", &exponential),
         ("square", &bell),
         ("cosine", &cosine),

@@ -600,7 +600,8 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
         let jumps = [most - least, squares].map(|range| range / f64::from(POINTS));
         [0, 1].map(|order| {
             let [mean, std_error] = scattered[order];
-            let allowed = STD_ERRORS * std_error + jumps[order] + ACCURACY * sums.scales()[order];
+            let rounding = [8.0 * f64::EPSILON * sums.size, noise(sums.scales())][order];
+            let allowed = STD_ERRORS * std_error + jumps[order] + ACCURACY * sums.scales()[order] + rounding;
             if inside && (mean - sums.moments[order]).abs() <= allowed {
                 return Ok(());
             }
