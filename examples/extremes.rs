@@ -133,7 +133,7 @@ fn extremes() -> Result<Vec<Extreme>> {
             "p = 0.999999, k = 10⁸",
             (1e8 * p.ln()).exp() * (1.0 - p),
             3.719_889_966_158_222_4e-50,
-            Roulette::new(p)?.pmf(100_000_000),
+            Roulette::new(p)?.bounces().pmf(100_000_000),
         ),
         extreme(
             "5.1",
@@ -141,7 +141,7 @@ fn extremes() -> Result<Vec<Extreme>> {
             "1 − p = 10⁻¹⁰, k = 3",
             1.0 - rare.powi(4),
             4.000_000_330_361_484e-10,
-            Roulette::new(rare)?.cdf(3),
+            Roulette::new(rare)?.bounces().cdf(3),
         ),
         extreme(
             "5.3",

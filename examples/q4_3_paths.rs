@@ -23,13 +23,16 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
     let bounces = options.limit("bounces");
     let exact = [Some(room.one_bounce()), room.two_bounces()]; // after one bounce, and after two
 
-    let mut drawings = Answer::new("4.3", "paths in the room")
-        .figure(figure::two_bounces_converging(&room, options.seed)?)
-        .figure(figure::occluded_fraction(200_000, options.seed)?)
-        .figure(figure::radiance_by_bounces(&room, options.seed)?)
-        .figure(figure::mistakes(Topic::Paths)?);
-    for figure in figure::path_errors(&room, options.seed)? {
-        drawings = drawings.figure(figure);
+    let mut drawings = Answer::new("4.3", "paths in the room");
+    if options.shard.is_none() {
+        drawings = drawings
+            .figure(figure::two_bounces_converging(&room, options.seed)?)
+            .figure(figure::occluded_fraction(200_000, options.seed)?)
+            .figure(figure::radiance_by_bounces(&room, options.seed)?)
+            .figure(figure::mistakes(Topic::Paths)?);
+        for figure in figure::path_errors(&room, options.seed)? {
+            drawings = drawings.figure(figure);
+        }
     }
     let mut answers = vec![drawings];
     let mut add =
@@ -84,7 +87,7 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
         add("cumulative, sets of 256 Sobol points", &sobol(paths, 256)?, truth, paths.caution())?;
     } else {
         for (what, bounces) in [
-            ("cumulative", Bounces::AllByWeight),
+            ("cumulative", Bounces::AllByThroughput),
             ("all light, roulette with q = 0.8", Bounces::All(0.8)),
             ("all light, roulette with q = 0.5", Bounces::All(0.5)),
         ] {

@@ -21,8 +21,8 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
         bounces
     });
     // also an error where a ray would never end
-    roulette.bounces_by_simulation()?;
-    let in_one_step = roulette.bounces_by_inversion()?;
+    roulette.bounces().by_simulation()?;
+    let in_one_step = roulette.bounces().by_inversion()?;
 
     let row = |part: &str, what: &str| Answer::new(&format!("5.1({part})"), what).parameter("p_rr", p_rr);
     let mut answers = Vec::new();
@@ -33,24 +33,24 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
         let what = |way| format!("P(N = {k}), {way}");
         answers.push(
             row(part, &what("coin by coin"))
-                .truth(roulette.pmf(k))
+                .truth(roulette.bounces().pmf(k))
                 .outcome(&options.run(&by_coins, 1_000_000)?),
         );
         answers.push(
             row(part, &what("in one step"))
-                .truth(roulette.pmf(k))
+                .truth(roulette.bounces().pmf(k))
                 .outcome(&options.run(&by_inversion, 1_000_000)?),
         );
     }
     answers.push(
         row("iii", "E[N], coin by coin")
-            .truth(roulette.mean())
+            .truth(roulette.bounces().mean())
             .outcome(&options.run(&coin_by_coin, 1_000_000)?)
             .figure(figure::bounces([p_rr, 0.2], 2000, options.seed)?),
     );
     answers.push(
         row("iii", "E[N], in one step")
-            .truth(roulette.mean())
+            .truth(roulette.bounces().mean())
             .outcome(&options.run(&in_one_step, 1_000_000)?),
     );
 

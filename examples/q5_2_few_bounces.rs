@@ -24,11 +24,11 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
         .outcome(&options.run(&paths, 1000)?);
     Ok(vec![
         row("E[N], coin by coin")
-            .truth(roulette.mean())
-            .outcome(&options.run(&roulette.bounces_by_simulation()?, 1_000_000)?),
+            .truth(roulette.bounces().mean())
+            .outcome(&options.run(&roulette.bounces().by_simulation()?, 1_000_000)?),
         row("E[N], in one step")
-            .truth(roulette.mean())
-            .outcome(&options.run(&roulette.bounces_by_inversion()?, 1_000_000)?),
+            .truth(roulette.bounces().mean())
+            .outcome(&options.run(&roulette.bounces().by_inversion()?, 1_000_000)?),
         if paths.variance().is_finite() { light } else { light.demonstration().note(INFINITE) },
     ])
 }

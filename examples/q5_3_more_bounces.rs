@@ -28,8 +28,8 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
         answers.push(
             Answer::new("5.3", "E[N]")
                 .parameter("p_rr", p_rr)
-                .truth(roulette.mean())
-                .outcome(&options.run(&roulette.bounces_by_inversion()?, 1_000_000)?),
+                .truth(roulette.bounces().mean())
+                .outcome(&options.run(&roulette.bounces().by_inversion()?, 1_000_000)?),
         );
     }
     let row = |what| {

@@ -193,7 +193,7 @@ fn all_bounces(trade: impl Fn(f64) -> Result<Trade>) -> Result<Compared> {
     let paths = |bounces| Paths::new(room, bounces, Cosine, FindLight::BySampling);
     let [truth, truth_error] = ALL_LIGHT;
     let rivals = [
-        Rival::new("roulette by weight", paths(Bounces::AllByWeight)?),
+        Rival::new("roulette by throughput", paths(Bounces::AllByThroughput)?),
         Rival::new("roulette, q = 0.8", paths(Bounces::All(0.8))?),
         Rival::new("roulette, q = 0.7", paths(Bounces::All(0.7))?),
         Rival::new("up to 2 bounces", paths(Bounces::UpTo(2))?).nature(Nature::Biased),

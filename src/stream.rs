@@ -1,6 +1,6 @@
 //! Where random numbers come from: one numbering of them by (seed, block, draw).
 //!
-//! A block of a run has [`LANES`] generators. Draw i of the block takes its numbers from generator i mod 32, after the numbers
+//! A block of a run has 32 generators. Draw i of the block takes its numbers from generator i mod 32, after the numbers
 //! of the draws before it there. So a draw's numbers do not depend on how draws are computed: one at a time in any order of
 //! the generators, or 32 side by side in the lanes of vectors.
 
@@ -11,7 +11,7 @@ use pulp::NullaryFnOnce;
 use rand::TryRng;
 
 use crate::fast::{Real, widest};
-use crate::placement::{Placement, Sobol};
+use crate::placement::{Placement, SobolRows};
 
 /// A stream of random numbers: those of one block of a run, draw by draw.
 ///
@@ -233,14 +233,13 @@ impl Stream {
     ) {
         let (one, first) = (self.one, self.draw);
         let (count, rows) = (range.len(), rows.get_mut(range.start..).unwrap_or_default());
-        let sobol = if let Source::Placed(Placement::Sobol(sobol)) = self.source {
-            Some((sobol, first))
-        } else {
-            None
+        let sobol = match &self.source {
+            Source::Placed(Placement::Sobol(sobol)) => Some(sobol.rows(first, each, count)),
+            _ => None,
         };
         let lanes = self.lanes();
         lanes.put(0, one);
-        widest(Fill { lanes, rows, each, sets, count, sobol });
+        widest(Fill { lanes, rows, each, sets, count, sobol: sobol.as_ref() });
         self.one = lanes.get(0);
         if let Source::Placed(Placement::Jittered(grid)) = &self.source {
             for (set, first) in (0..count).zip((self.draw..).step_by(LANES)) {
@@ -516,8 +515,8 @@ struct Fill<'a, T> {
     each: usize,
     sets: usize,
     count: usize,
-    /// Where they are placed, and the first draw.
-    sobol: Option<(Sobol, u64)>,
+    /// Where they are placed.
+    sobol: Option<&'a SobolRows>,
 }
 
 impl<T: Real> NullaryFnOnce for Fill<'_, T> {
@@ -527,9 +526,7 @@ impl<T: Real> NullaryFnOnce for Fill<'_, T> {
     fn call(self) {
         match self.sobol {
             None => self.fill(|_, _, _, _| ()),
-            Some((sobol, first)) => self.fill(|words, set, lane, number| {
-                sobol.place_all(words, first + (set * LANES) as u64, lane, number);
-            }),
+            Some(sobol) => self.fill(|words, set, lane, number| sobol.place(words, set, lane, number)),
         }
     }
 }
@@ -587,4 +584,47 @@ pub(crate) const fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     z ^ (z >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{Rng, SeedableRng};
+    use rand_xoshiro::Xoshiro256PlusPlus;
+
+    use super::*;
+
+    /// Every generator of a block, alone and in its lane, is the library's from the same state.
+    #[test]
+    fn generators_are_the_librarys() {
+        for (seed, block) in [(0, 0), (1, 7), (u64::MAX, 3)] {
+            let mut lanes = Lanes::new(seed, block);
+            let mut rows = [[0.0; LANES]; 100];
+            let begun = lanes.clone();
+            widest(Fill { lanes: &mut lanes, rows: &mut rows, each: 100, sets: 1, count: 1, sobol: None });
+            for lane in 0..LANES {
+                let Xoshiro(state) = begun.get(lane);
+                let mut bytes = [0; 32];
+                for (bytes, word) in bytes.as_chunks_mut().0.iter_mut().zip(state) {
+                    *bytes = word.to_le_bytes();
+                }
+                let (mut library, mut one) = (Xoshiro256PlusPlus::from_seed(bytes), begun.get(lane));
+                for row in &rows {
+                    let word = library.next_u64();
+                    assert_eq!((one.next(), row[lane]), (word, f64::of_word(word)));
+                }
+            }
+            assert_eq!(Stream::new(seed, block).one.0, begun.get(0).0);
+        }
+    }
+
+    /// A conversion by bits is the plain one.
+    #[test]
+    fn a_word_is_the_same_number_either_way() {
+        let mut rng = Stream::new(5, 0);
+        let random = std::iter::repeat_with(|| rng.next_u64()).take(100_000);
+        for word in [0, u64::MAX, 1 << 11, (1 << 11) - 1, 1 << 43, (1 << 43) - 1].into_iter().chain(random) {
+            assert_eq!(on_the_grid(word), f64::of_word(word));
+            assert_eq!(f64::of_word(on_the_grid(word).word()), on_the_grid(word));
+        }
+    }
 }

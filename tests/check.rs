@@ -708,8 +708,8 @@ fn a_cdf_may_leave_the_unit_interval_by_rounding() {
 #[test]
 fn laws_with_jumps_are_compared_at_both_sides_of_each() {
     let roulette = Roulette::new(0.83).unwrap();
-    let cdf = |x: f64| if x < 0.0 { 0.0 } else { roulette.cdf(x as u64) };
-    let by_inversion = roulette.bounces_by_inversion().unwrap();
+    let cdf = |x: f64| if x < 0.0 { 0.0 } else { roulette.bounces().cdf(x as u64) };
+    let by_inversion = roulette.bounces().by_inversion().unwrap();
     assert!(distributed_as(&by_inversion, cdf, 0.01, 1e-12, common::seed(110)).unwrap().agrees);
     let one_more = from_fn(|rng| by_inversion.draw(rng) + 1.0);
     assert!(!distributed_as(&one_more, cdf, 0.01, 1e-12, common::seed(111)).unwrap().agrees);

@@ -120,24 +120,24 @@ proptest! {
         let Ok(law) = Roulette::new(p) else { return Ok(()) };
         for k in [k, k >> 11, small, 1 << 53, u64::MAX - 1] {
             for next in [k + 1, k.saturating_add(small)] {
-                prop_assert!(law.cdf(k) <= law.cdf(next), "cdf({k}), cdf({next})");
-                prop_assert!(law.survival(k) >= law.survival(next), "survival({k}), survival({next})");
-                prop_assert!(law.pmf(k) >= law.pmf(next), "pmf({k}), pmf({next})");
+                prop_assert!(law.bounces().cdf(k) <= law.bounces().cdf(next), "cdf({k}), cdf({next})");
+                prop_assert!(law.bounces().survival(k) >= law.bounces().survival(next), "survival({k}), survival({next})");
+                prop_assert!(law.bounces().pmf(k) >= law.bounces().pmf(next), "pmf({k}), pmf({next})");
             }
-            for value in [law.pmf(k), law.cdf(k), law.survival(k)] {
+            for value in [law.bounces().pmf(k), law.bounces().cdf(k), law.bounces().survival(k)] {
                 prop_assert!((0.0..=1.0).contains(&value));
             }
-            prop_assert!((law.cdf(k) + law.survival(k) - 1.0).abs() <= 2.0 * f64::EPSILON);
+            prop_assert!((law.bounces().cdf(k) + law.bounces().survival(k) - 1.0).abs() <= 2.0 * f64::EPSILON);
         }
         for (u, v) in [(u, v), (v, u)].into_iter().filter(|(u, v)| u <= v) {
-            prop_assert!(law.quantile(u)? <= law.quantile(v)?);
+            prop_assert!(law.bounces().quantile(u)? <= law.bounces().quantile(v)?);
         }
         // the quantile leads back to u up to a step, 2 ulp being the cdf's own
-        let k = law.quantile(u)?;
+        let k = law.bounces().quantile(u)?;
         if k > 0 && k < u64::MAX {
-            prop_assert!(law.cdf(k) >= u && law.cdf(k - 1) < u);
+            prop_assert!(law.bounces().cdf(k) >= u && law.bounces().cdf(k - 1) < u);
         }
-        prop_assert_eq!(law.quantile(p + u).is_ok(), (0.0..=1.0).contains(&(p + u)));
+        prop_assert_eq!(law.bounces().quantile(p + u).is_ok(), (0.0..=1.0).contains(&(p + u)));
     }
 
     #[test]
@@ -357,7 +357,7 @@ fn any_bounces() -> impl Strategy<Value = Bounces> {
         (0..70u32).prop_map(Bounces::Exactly),
         (0..70u32).prop_map(Bounces::UpTo),
         q.prop_map(Bounces::All),
-        Just(Bounces::AllByWeight),
+        Just(Bounces::AllByThroughput),
         any::<u32>().prop_map(Bounces::UpTo),
     ]
 }
@@ -420,7 +420,7 @@ proptest! {
             Err(Error::Parameter { value, .. }) => {
                 match bounces {
                     Bounces::All(q) => prop_assert!(!(q > 0.0 && q <= 0.9999)),
-                    Bounces::AllByWeight => prop_assert!(value > 0.999),
+                    Bounces::AllByThroughput => prop_assert!(value > 0.999),
                     other => prop_assert!(false, "{other:?}"),
                 }
                 return Ok(());
@@ -499,7 +499,7 @@ fn stuck_generators_give_finite_samples() {
         Inversion::new(|x: f64| (0.5 + x.atan() / PI).clamp(0.0, 1.0), [f64::NEG_INFINITY, f64::INFINITY])
             .unwrap();
     let tall = Rectangle::new([-1e300, 1e300], [1e-300, 3e-300]).unwrap();
-    let longest = Roulette::new(NEARLY_ONE).unwrap().bounces_by_inversion().unwrap();
+    let longest = Roulette::new(NEARLY_ONE).unwrap().bounces().by_inversion().unwrap();
     for word in words() {
         let mut rng = Stuck(word);
         for rate in [LOWEST_RATES[0], 0.37, f64::MAX] {
@@ -538,7 +538,7 @@ fn stuck_generators_give_finite_samples() {
     // all ones end a path of any p below 1, all zeros never do: n bounces have probability pⁿ
     assert!(!Roulette::new(NEARLY_ONE).unwrap().continues(&mut Stuck(u64::MAX)));
     assert_eq!(
-        Roulette::new(NEARLY_ONE).unwrap().bounces_by_simulation().unwrap().sample(&mut Stuck(u64::MAX)),
+        Roulette::new(NEARLY_ONE).unwrap().bounces().by_simulation().unwrap().sample(&mut Stuck(u64::MAX)),
         0
     );
     assert!(Roulette::new(f64::from_bits(1)).unwrap().continues(&mut Stuck(0)));
@@ -550,8 +550,8 @@ fn stuck_streams_give_finite_draws() {
     let (square, model) = (Rectangle::WORKSHEET, LightModel::new(0.8, 0.5).unwrap());
     let mut estimators: Vec<(String, Box<dyn Estimator>)> = vec![
         ("exponential".into(), Box::new(Exponential::new(0.37).unwrap())),
-        ("bounces".into(), Box::new(Roulette::new(NEARLY_ONE).unwrap().bounces_by_inversion().unwrap())),
-        ("coins".into(), Box::new(Roulette::new(NEARLY_ONE).unwrap().bounces_by_simulation().unwrap())),
+        ("bounces".into(), Box::new(Roulette::new(NEARLY_ONE).unwrap().bounces().by_inversion().unwrap())),
+        ("coins".into(), Box::new(Roulette::new(NEARLY_ONE).unwrap().bounces().by_simulation().unwrap())),
         ("wrapped".into(), Box::new(Roulette::new(1e-300).unwrap().wrap(from_fn(|rng| rng.uniform())))),
         ("roulette".into(), Box::new(model.roulette(0.9).unwrap())),
         ("truncated".into(), Box::new(model.truncated(20).unwrap())),

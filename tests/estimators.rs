@@ -35,8 +35,8 @@ fn all() -> Vec<(String, Box<dyn Estimator>, f64)> {
         ("cosine", Box::new(surface.cosine_estimator(light))),
         ("uniform", Box::new(surface.uniform_estimator(light))),
         ("f/p over directions", Box::new(surface.estimator(light, Hemisphere::Cosine))),
-        ("bounces by inversion", Box::new(roulette.bounces_by_inversion().unwrap())),
-        ("bounces by simulation", Box::new(roulette.bounces_by_simulation().unwrap())),
+        ("bounces by inversion", Box::new(roulette.bounces().by_inversion().unwrap())),
+        ("bounces by simulation", Box::new(roulette.bounces().by_simulation().unwrap())),
         ("X_rr", Box::new(roulette.wrap(exponential))),
         ("model, roulette", Box::new(model.roulette(0.8).unwrap())),
         ("model, truncated", Box::new(model.truncated(8).unwrap())),
@@ -47,7 +47,7 @@ fn all() -> Vec<(String, Box<dyn Estimator>, f64)> {
     ];
     let exact = exact.into_iter().map(|(name, estimator)| (name.to_owned(), estimator, 0.0));
     let mut all: Vec<_> = exact.collect();
-    for bounces in [Bounces::UpTo(3), Bounces::UpTo(15), Bounces::All(0.7), Bounces::AllByWeight] {
+    for bounces in [Bounces::UpTo(3), Bounces::UpTo(15), Bounces::All(0.7), Bounces::AllByThroughput] {
         for light in FindLight::ALL {
             let paths = Paths::new(room, bounces, Hemisphere::Cosine, light).unwrap();
             // other roundings, which every further bounce makes more of

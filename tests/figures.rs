@@ -156,7 +156,7 @@ fn what_cannot_be_drawn_is_refused_or_said() {
         (Bounces::Exactly(5), 5),
         (Bounces::UpTo(64), 64),
         (Bounces::All(0.8), u64::from(u32::MAX)),
-        (Bounces::AllByWeight, u64::from(u32::MAX)),
+        (Bounces::AllByThroughput, u64::from(u32::MAX)),
     ] {
         let refused = figure::paths_drawn(&paths(Scene::default(), bounces, FindLight::BySampling), 3, 1);
         assert!(matches!(refused, Err(Error::Count { value, .. }) if value == most), "{bounces:?}");
@@ -225,7 +225,7 @@ fn all_light_falls_to_its_truth_where_hardly_anything_is_absorbed() {
     let figures = figure::path_errors(&room, 1).unwrap();
     assert!(series(&figures[0], "roulette q = 0.8").is_empty(), "its variance may be infinite");
     // the points come before the line
-    let by_weight = series(&figures[0], "roulette by weight");
+    let by_weight = series(&figures[0], "roulette by throughput");
     let [[_, few, ..], _, [_, many, ..], ..] = by_weight[..] else { panic!("{by_weight:?}") };
     let ratio = few / many;
     assert!((4.0..16.0).contains(&ratio), "from 16 to 1,024 paths the error falls by 8, not by {ratio}");

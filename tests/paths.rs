@@ -22,7 +22,7 @@ use unbiased::lambertian::Lambertian;
 use unbiased::paths::{Bounces, FindLight, Paths, reflected};
 use unbiased::{Budget, Estimate, Estimator, Run, Stream, estimate, from_fn};
 
-use Bounces::{All, AllByWeight, Exactly, UpTo};
+use Bounces::{All, AllByThroughput, Exactly, UpTo};
 use FindLight::{ByChance, BySampling};
 use Hemisphere::{Cosine, Uniform};
 
@@ -390,7 +390,7 @@ fn the_rooms_closed_forms_are_the_quadratures() {
 #[test]
 fn paths_say_what_they_count() {
     for (bounces, most) in
-        [(Exactly(3), 3), (UpTo(7), 7), (UpTo(0), 0), (All(0.5), u32::MAX), (AllByWeight, u32::MAX)]
+        [(Exactly(3), 3), (UpTo(7), 7), (UpTo(0), 0), (All(0.5), u32::MAX), (AllByThroughput, u32::MAX)]
     {
         let paths = paths(furnace(0.5), bounces, WAYS[0]);
         assert_eq!(paths.most_bounces(), most, "{bounces:?}");
@@ -472,7 +472,7 @@ fn the_furnace_is_exact_with_uniform_directions() {
 fn roulette_in_the_furnace_is_exact() {
     let mut phi = Stream::new(common::seed(422), 0);
     for albedo in ALBEDOS {
-        let by_weight = paths(furnace(albedo), AllByWeight, (Cosine, ByChance));
+        let by_weight = paths(furnace(albedo), AllByThroughput, (Cosine, ByChance));
         for (q, by_q) in [0.3, 0.75, albedo, 0.9999]
             .map(|q| (q, paths(furnace(albedo), All(q), (Cosine, ByChance))))
             .into_iter()
@@ -500,9 +500,9 @@ fn roulette_in_the_furnace_is_exact() {
 fn the_furnace_without_a_limit() {
     for (i, (albedo, bounces, directions)) in [
         (0.2, All(0.5), Uniform),
-        (0.07, AllByWeight, Uniform),
+        (0.07, AllByThroughput, Uniform),
         (0.5, All(0.85), Cosine),
-        (0.05, AllByWeight, Cosine),
+        (0.05, AllByThroughput, Cosine),
     ]
     .into_iter()
     .enumerate()
@@ -842,7 +842,7 @@ fn all_ways_agree() {
     ways_agree(top, &[UpTo(3)], 1300, None);
     let shadow = Scene { wall_albedo: 0.3, cube_albedo: 0.5, point: [0.7, 0.1, 0.0], ..scene };
     // what more than 12 bounces would leave is below 0.3⁷·0.5⁶ = 4e-6, as the cube does not see itself
-    ways_agree(shadow, &[All(0.6), AllByWeight, UpTo(12)], 1400, None);
+    ways_agree(shadow, &[All(0.6), AllByThroughput, UpTo(12)], 1400, None);
 }
 
 fn ways_agree(scene: Scene, group: &[Bounces], seed: u64, truth: Option<f64>) {
@@ -903,7 +903,7 @@ fn a_traced_path_is_the_one_drawn() {
     for scene in scenes {
         let room = room(scene);
         for way in WAYS {
-            for bounces in [Exactly(0), Exactly(2), UpTo(0), UpTo(3), All(0.8), AllByWeight] {
+            for bounces in [Exactly(0), Exactly(2), UpTo(0), UpTo(3), All(0.8), AllByThroughput] {
                 let estimator = paths(scene, bounces, way);
                 for block in 0..200 {
                     let mut rng = Stream::new(common::seed(542), block);
@@ -959,7 +959,7 @@ fn a_traced_path_is_the_one_drawn() {
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     for way in WAYS {
-        for bounces in [Exactly(2), All(0.7), AllByWeight] {
+        for bounces in [Exactly(2), All(0.7), AllByThroughput] {
             let estimator = paths(Scene::default(), bounces, way);
             let bits = [1, 2, 5].map(|threads| {
                 let run = Run::new(common::seed(543)).threads(threads);
@@ -977,7 +977,7 @@ fn a_seed_keeps_its_paths() {
     let mut rng = Stream::new(1, 0);
     let mut bits = Vec::new();
     for way in WAYS {
-        for bounces in [UpTo(3), All(0.8), AllByWeight] {
+        for bounces in [UpTo(3), All(0.8), AllByThroughput] {
             bits.push(paths(scene, bounces, way).draw(&mut rng).to_bits());
         }
     }
@@ -1026,16 +1026,16 @@ fn a_caution_says_when_the_variance_may_be_infinite() {
         }
     }
     // by weight: never with cosine directions; with uniform ones from ρ² = 3/4 on
-    assert_eq!(says(with(0.5, 0.99, 0.5), AllByWeight, WAYS[0]), None);
-    assert_eq!(says(with(0.5, 0.86, 0.5), AllByWeight, WAYS[1]), None);
+    assert_eq!(says(with(0.5, 0.99, 0.5), AllByThroughput, WAYS[0]), None);
+    assert_eq!(says(with(0.5, 0.86, 0.5), AllByThroughput, WAYS[1]), None);
     assert_eq!(
-        says(with(0.5, 0.87, 0.5), AllByWeight, WAYS[1]).unwrap(),
-        "the variance may be infinite, and the error bar too short: the squared weight of a path grows by (4/3)ρ² = 1.0092 a bounce for the largest albedo, and nothing ends a path of weight 1 or more"
+        says(with(0.5, 0.87, 0.5), AllByThroughput, WAYS[1]).unwrap(),
+        "the variance may be infinite, and the error bar too short: the squared throughput of a path grows by (4/3)ρ² = 1.0092 a bounce for the largest albedo, and nothing ends a path of throughput 1 or more"
     );
     // a number of bounces ends every path, but uniform directions make weights that vary too much: from 24 of them on, (9/5)²⁴ = 1.3e6
     let few = |draws: &str| {
         Some(format!(
-            "uniform directions make most weights far too small and a few very large, so that the error bar of fewer than about {draws} draws means nothing"
+            "uniform directions make most throughputs far too small and a few very large, so that the error bar of fewer than about {draws} draws means nothing"
         ))
     };
     for albedo in [1.0, 0.5, 1e-3] {
@@ -1059,7 +1059,7 @@ fn a_caution_says_when_the_variance_may_be_infinite() {
     assert_eq!(says(with(0.5, 0.5, 0.5), Exactly(15), (Uniform, ByChance)), None);
     assert_eq!(
         says(with(0.5, 0.5, 0.5), Exactly(16), (Uniform, ByChance)).unwrap(),
-        "uniform directions make most weights far too small and a few very large, and few paths find the light, so that the error bar of fewer than about 1e6 draws means nothing"
+        "uniform directions make most throughputs far too small and a few very large, and few paths find the light, so that the error bar of fewer than about 1e6 draws means nothing"
     );
     assert_eq!(says(with(0.5, 0.5, 0.00501), Exactly(1), (Cosine, ByChance)), None);
     assert_eq!(
@@ -1069,10 +1069,10 @@ fn a_caution_says_when_the_variance_may_be_infinite() {
     assert_eq!(says(with(0.5, 0.5, 0.0), Exactly(1), (Cosine, ByChance)), None);
     assert_eq!(says(with(0.5, 0.5, 0.0005), UpTo(0), (Cosine, ByChance)), None);
     let lit = Scene { emission: 1.0, ..with(0.5, 0.5, 0.0005) };
-    assert_eq!(says(lit, AllByWeight, (Cosine, ByChance)), None);
+    assert_eq!(says(lit, AllByThroughput, (Cosine, ByChance)), None);
     // a light that touches the walls, sampled from there
     let told = "the variance may be infinite, and the error bar too short: the light touches the walls, where its samples weigh without bound";
-    for bounces in [UpTo(2), Exactly(2), All(0.9), AllByWeight] {
+    for bounces in [UpTo(2), Exactly(2), All(0.9), AllByThroughput] {
         assert_eq!(says(with(0.5, 0.5, 2.0), bounces, WAYS[0]).unwrap(), told);
         assert_eq!(says(with(0.5, 0.5, 2.0), bounces, WAYS[2]), None);
         // one that all but does: 8/(2 − h)³
@@ -1118,12 +1118,14 @@ fn bad_paths_are_errors() {
         let rest =
             "at most 0.999 where nothing but absorption ends a path (or choose a q or a number of bounces)";
         let scene = Scene { wall_albedo, cube_albedo, ..Scene::default() };
-        says(scene, AllByWeight, &format!("the largest albedo must be {rest}, not {shown}"));
+        says(scene, AllByThroughput, &format!("the largest albedo must be {rest}, not {shown}"));
         assert!(new(scene, All(0.9999)).is_ok() && new(scene, UpTo(64)).is_ok());
     }
     let scene = Scene { wall_albedo: 0.999, ..Scene::default() };
     assert!(
-        new(scene, AllByWeight).is_ok() && new(scene, Exactly(64)).is_ok() && new(scene, All(5e-324)).is_ok()
+        new(scene, AllByThroughput).is_ok()
+            && new(scene, Exactly(64)).is_ok()
+            && new(scene, All(5e-324)).is_ok()
     );
 }
 

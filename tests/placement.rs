@@ -14,19 +14,22 @@ use unbiased::{
     Budget, Density, Error, Estimator, Run, Stream, check, estimate, f_over_p, from_fn, from_uniforms,
 };
 
-/// Estimators of at most two numbers, with their means, and variances where they are known.
-fn of_two_numbers() -> Vec<(String, usize, Box<dyn Estimator>, f64, Option<f64>)> {
+/// Its name and how many numbers it takes, its mean, and its variance where that is known.
+type Known = (String, usize, Box<dyn Estimator>, f64, Option<f64>);
+
+/// Estimators of at most two numbers.
+fn of_two_numbers() -> Vec<Known> {
     let exponential = Exponential::new(0.37).unwrap();
     let bounces = Roulette::new(0.8).unwrap();
     let surface = Lambertian::new(0.61).unwrap();
-    let mut all: Vec<(String, usize, Box<dyn Estimator>, f64, Option<f64>)> = vec![
+    let mut all: Vec<Known> = vec![
         ("exponential".into(), 1, Box::new(exponential), exponential.mean(), Some(exponential.variance())),
         (
             "bounces".into(),
             1,
-            Box::new(bounces.bounces_by_inversion().unwrap()),
-            bounces.mean(),
-            Some(bounces.variance()),
+            Box::new(bounces.bounces().by_inversion().unwrap()),
+            bounces.bounces().mean(),
+            Some(bounces.bounces().variance()),
         ),
     ];
     let offset = Rectangle::new([0.3, 2.0], [-1.1, 3.0]).unwrap();
@@ -103,7 +106,7 @@ fn every_placed_number_is_uniform() {
     let sets = 1 << 16;
     for place in PLACES {
         let number = from_fn(move |rng| {
-            (0..place).for_each(|_| drop(rng.uniform()));
+            (0..place).for_each(|_| _ = rng.uniform());
             rng.uniform()
         });
         let fourth = from_fn(move |rng| {
@@ -117,7 +120,7 @@ fn every_placed_number_is_uniform() {
     for place in PLACES.into_iter().filter(|place| *place < 256) {
         // Σ over the set of the cell's number is that of all cells: without any variance
         let cell = from_fn(move |rng| {
-            (0..place).for_each(|_| drop(rng.uniform()));
+            (0..place).for_each(|_| _ = rng.uniform());
             (rng.uniform() * 64.0).floor()
         });
         for estimator in [Box::new(sobol(&cell, 64).unwrap()), Box::new(sobol(&cell, 128).unwrap())] {
@@ -129,7 +132,7 @@ fn every_placed_number_is_uniform() {
     for plane in [0, 1, 5, 127] {
         for side in [1u32, 7, 8, 50] {
             let cell = from_fn(move |rng| {
-                (0..2 * plane).for_each(|_| drop(rng.uniform()));
+                (0..2 * plane).for_each(|_| _ = rng.uniform());
                 let [column, row] = [(); 2].map(|()| (rng.uniform() * f64::from(side)).floor());
                 f64::from(side) * row + column
             });
@@ -155,7 +158,7 @@ fn the_mean_stays() {
     let rows: Vec<(&str, Box<dyn Estimator>, f64)> = vec![
         ("model", Box::new(model.roulette(0.8).unwrap()), model.mean()),
         ("X_rr", Box::new(Roulette::new(0.8).unwrap().wrap(exponential)), exponential.mean()),
-        ("simulation", Box::new(Roulette::new(0.8).unwrap().bounces_by_simulation().unwrap()), 4.0),
+        ("simulation", Box::new(Roulette::new(0.8).unwrap().bounces().by_simulation().unwrap()), 4.0),
         ("up to 1", Box::new(up_to(Bounces::UpTo(1))), one),
         ("up to 2", Box::new(up_to(Bounces::UpTo(2))), one + two),
         ("up to 2, f32", Box::new(up_to(Bounces::UpTo(2)).in_f32().unwrap()), one + two),
@@ -163,7 +166,7 @@ fn the_mean_stays() {
         // an estimate from 3000 sets of 65,536 points, to 9e-7
         ("up to 15", Box::new(up_to(Bounces::UpTo(15))), 0.355_326_94),
         ("all", Box::new(up_to(Bounces::All(0.7))), 0.355_331_1),
-        ("by weight", Box::new(up_to(Bounces::AllByWeight)), 0.355_331_1),
+        ("by weight", Box::new(up_to(Bounces::AllByThroughput)), 0.355_331_1),
     ];
     for (name, estimator, truth) in rows {
         let placed: [Box<dyn Estimator>; 2] =

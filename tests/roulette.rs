@@ -58,13 +58,13 @@ fn assert_moments(what: &str, estimator: &impl Estimator, mean: f64, variance: f
 #[test]
 fn the_sheets_answers() {
     let four_fifths = roulette(0.8);
-    assert_relative_eq!(four_fifths.pmf(0), 1.0 / 5.0, epsilon = 0.0, max_relative = 3e-16);
-    assert_relative_eq!(four_fifths.pmf(2), 16.0 / 125.0, epsilon = 0.0, max_relative = 4e-16);
-    assert_relative_eq!(four_fifths.mean(), 4.0, epsilon = 0.0, max_relative = 4e-16);
-    assert_relative_eq!(four_fifths.variance(), 20.0, epsilon = 0.0, max_relative = 8e-16);
-    assert_eq!(roulette(0.2).mean(), 0.25);
-    assert_eq!(roulette(1.0).mean(), f64::INFINITY);
-    assert_eq!(roulette(1.0).variance(), f64::INFINITY);
+    assert_relative_eq!(four_fifths.bounces().pmf(0), 1.0 / 5.0, epsilon = 0.0, max_relative = 3e-16);
+    assert_relative_eq!(four_fifths.bounces().pmf(2), 16.0 / 125.0, epsilon = 0.0, max_relative = 4e-16);
+    assert_relative_eq!(four_fifths.bounces().mean(), 4.0, epsilon = 0.0, max_relative = 4e-16);
+    assert_relative_eq!(four_fifths.bounces().variance(), 20.0, epsilon = 0.0, max_relative = 8e-16);
+    assert_eq!(roulette(0.2).bounces().mean(), 0.25);
+    assert_eq!(roulette(1.0).bounces().mean(), f64::INFINITY);
+    assert_eq!(roulette(1.0).bounces().variance(), f64::INFINITY);
 }
 
 // p, k, P(N = k), P(N ≤ k), P(N > k): by mpmath, from the exact value of the f64 p
@@ -95,9 +95,17 @@ const LAWS: &[(f64, u64, f64, f64, f64)] = &[
 fn laws_are_right_to_the_last_places_up_to_k_of_1e18_and_beyond() {
     for &(p, k, pmf, cdf, survival) in LAWS {
         let law = roulette(p);
-        assert!(ulps(law.pmf(k), pmf) <= 2, "pmf({k}) at p = {p:?}: {:?}, not {pmf:?}", law.pmf(k));
-        assert!(ulps(law.cdf(k), cdf) <= 2, "cdf({k}) at p = {p:?}: {:?}, not {cdf:?}", law.cdf(k));
-        let found = law.survival(k);
+        assert!(
+            ulps(law.bounces().pmf(k), pmf) <= 2,
+            "pmf({k}) at p = {p:?}: {:?}, not {pmf:?}",
+            law.bounces().pmf(k)
+        );
+        assert!(
+            ulps(law.bounces().cdf(k), cdf) <= 2,
+            "cdf({k}) at p = {p:?}: {:?}, not {cdf:?}",
+            law.bounces().cdf(k)
+        );
+        let found = law.bounces().survival(k);
         assert!(ulps(found, survival) <= 2, "survival({k}) at p = {p:?}: {found:?}, not {survival:?}");
     }
     for (p, mean, variance) in [
@@ -106,16 +114,22 @@ fn laws_are_right_to_the_last_places_up_to_k_of_1e18_and_beyond() {
         (NEARLY_ONE, 9007199254740991.0, 8.112963841460667e31),
         (1e-300, 1e-300, 1e-300),
     ] {
-        assert!(ulps(roulette(p).mean(), mean) <= 2, "mean at p = {p:?}");
-        assert!(ulps(roulette(p).variance(), variance) <= 2, "variance at p = {p:?}");
+        assert!(ulps(roulette(p).bounces().mean(), mean) <= 2, "mean at p = {p:?}");
+        assert!(ulps(roulette(p).bounces().variance(), variance) <= 2, "variance at p = {p:?}");
     }
     // no roulette: the path never ends, at whichever k one looks
     for k in [0, 1, 1 << 53, u64::MAX] {
         let never = roulette(1.0);
-        assert_eq!((never.pmf(k), never.cdf(k), never.survival(k)), (0.0, 0.0, 1.0));
+        assert_eq!(
+            (never.bounces().pmf(k), never.bounces().cdf(k), never.bounces().survival(k)),
+            (0.0, 0.0, 1.0)
+        );
     }
-    assert_eq!(roulette(NEARLY_ONE).cdf(u64::MAX), 1.0);
-    assert!(roulette(NEARLY_ONE).survival(u64::MAX) == 0.0 && roulette(f64::from_bits(1)).survival(0) > 0.0);
+    assert_eq!(roulette(NEARLY_ONE).bounces().cdf(u64::MAX), 1.0);
+    assert!(
+        roulette(NEARLY_ONE).bounces().survival(u64::MAX) == 0.0
+            && roulette(f64::from_bits(1)).bounces().survival(0) > 0.0
+    );
 }
 
 /// statrs counts trials, so that its x is our k + 1, and its success is our end of the path.
@@ -126,31 +140,51 @@ fn laws_agree_with_statrs_geometric_shifted_by_one() {
         for k in (0..50).chain([100, 1000, 12_345]) {
             // statrs' powi and exp(n ln p) lose up to k ulp
             let loss = 1e-15 * (k as f64 + 4.0) * p.ln().abs().max(1.0);
-            assert_relative_eq!(law.pmf(k), trials.pmf(k + 1), epsilon = 1e-300, max_relative = loss);
-            assert_relative_eq!(law.cdf(k), trials.cdf(k + 1), epsilon = 0.0, max_relative = 1e-13);
-            assert_relative_eq!(law.survival(k), trials.sf(k + 1), epsilon = 1e-300, max_relative = loss);
+            assert_relative_eq!(
+                law.bounces().pmf(k),
+                trials.pmf(k + 1),
+                epsilon = 1e-300,
+                max_relative = loss
+            );
+            assert_relative_eq!(law.bounces().cdf(k), trials.cdf(k + 1), epsilon = 0.0, max_relative = 1e-13);
+            assert_relative_eq!(
+                law.bounces().survival(k),
+                trials.sf(k + 1),
+                epsilon = 1e-300,
+                max_relative = loss
+            );
         }
-        assert_relative_eq!(law.mean() + 1.0, trials.mean().unwrap(), epsilon = 0.0, max_relative = 1e-15);
+        assert_relative_eq!(
+            law.bounces().mean() + 1.0,
+            trials.mean().unwrap(),
+            epsilon = 0.0,
+            max_relative = 1e-15
+        );
         // given 1 − p, statrs has p to half a place of 1 only
         let variance = trials.variance().unwrap();
-        assert_relative_eq!(law.variance(), variance, epsilon = 0.0, max_relative = 1e-15 + 1.2e-16 / p);
+        assert_relative_eq!(
+            law.bounces().variance(),
+            variance,
+            epsilon = 0.0,
+            max_relative = 1e-15 + 1.2e-16 / p
+        );
         // between two steps, where a logarithm's rounding cannot matter
-        for k in (0..30).filter(|k| law.survival(*k) > 1e-6) {
-            let u = (law.cdf(k) + law.cdf(k + 1)) / 2.0;
-            assert_eq!(law.quantile(u).unwrap() + 1, trials.inverse_cdf(u));
+        for k in (0..30).filter(|k| law.bounces().survival(*k) > 1e-6) {
+            let u = (law.bounces().cdf(k) + law.bounces().cdf(k + 1)) / 2.0;
+            assert_eq!(law.bounces().quantile(u).unwrap() + 1, trials.inverse_cdf(u));
         }
     }
 }
 
 #[test]
 fn quantiles_at_the_ends() {
-    assert_eq!(roulette(0.8).quantile(0.0), Ok(0));
-    assert_eq!(roulette(0.8).quantile(1.0), Ok(u64::MAX));
-    assert_eq!(roulette(1.0).quantile(0.0), Ok(0));
-    assert_eq!(roulette(1.0).quantile(f64::from_bits(1)), Ok(u64::MAX));
-    assert_eq!(roulette(1e-300).quantile(NEARLY_ONE), Ok(0));
+    assert_eq!(roulette(0.8).bounces().quantile(0.0), Ok(0));
+    assert_eq!(roulette(0.8).bounces().quantile(1.0), Ok(u64::MAX));
+    assert_eq!(roulette(1.0).bounces().quantile(0.0), Ok(0));
+    assert_eq!(roulette(1.0).bounces().quantile(f64::from_bits(1)), Ok(u64::MAX));
+    assert_eq!(roulette(1e-300).bounces().quantile(NEARLY_ONE), Ok(0));
     // the median of 1 − 2⁻⁵³ by mpmath; cdf there is flat to the rounding of 1/2 over about one k
-    let median = roulette(NEARLY_ONE).quantile(0.5).unwrap();
+    let median = roulette(NEARLY_ONE).bounces().quantile(0.5).unwrap();
     assert!(median.abs_diff(6_243_314_768_165_358) <= 2, "{median}");
 }
 
@@ -165,12 +199,12 @@ fn bad_input_is_an_error_that_says_what_is_allowed() {
         "the continuation probability p_rr must be in (0, 1] (0 is biased unless E[X] = 0), not 0"
     );
     assert_eq!(
-        roulette(1.0).bounces_by_simulation().unwrap_err().to_string(),
+        roulette(1.0).bounces().by_simulation().unwrap_err().to_string(),
         "the continuation probability p_rr must be below 1 (at 1 the bounces never end), not 1"
     );
-    assert!(roulette(1.0).bounces_by_inversion().is_err());
+    assert!(roulette(1.0).bounces().by_inversion().is_err());
     for u in [-1e-9, 1.0 + f64::EPSILON, f64::NAN] {
-        assert!(roulette(0.8).quantile(u).is_err());
+        assert!(roulette(0.8).bounces().quantile(u).is_err());
     }
     let half = roulette(0.5);
     for (mean, variance) in [(f64::NAN, 1.0), (f64::INFINITY, 1.0), (0.0, -1.0), (0.0, f64::NAN)] {
@@ -227,9 +261,9 @@ proptest! {
     #[test]
     fn no_bits_panic_or_give_nan(p in any_f64(), u in any_f64(), x in any_f64(), y in any_f64(), k in any::<u64>()) {
         if let Ok(law) = Roulette::new(p) {
-            let values = [law.pmf(k), law.cdf(k), law.survival(k), law.mean(), law.variance()];
+            let values = [law.bounces().pmf(k), law.bounces().cdf(k), law.bounces().survival(k), law.bounces().mean(), law.bounces().variance()];
             prop_assert!(values.iter().all(|value| *value >= 0.0), "{values:?}");
-            let _ = law.quantile(u);
+            let _ = law.bounces().quantile(u);
             if let Ok(variance) = law.wrapped_variance(x, y) {
                 prop_assert!(variance >= 0.0);
             }
@@ -244,9 +278,9 @@ proptest! {
         p in probability(), v in probability(), q in probability(), x in any_f64(), k in any::<u64>(), c in any_f64()
     ) {
         if let Ok(law) = Roulette::new(p) {
-            let values = [law.pmf(k), law.cdf(k), law.survival(k), law.mean(), law.variance()];
+            let values = [law.bounces().pmf(k), law.bounces().cdf(k), law.bounces().survival(k), law.bounces().mean(), law.bounces().variance()];
             prop_assert!(values.iter().all(|value| *value >= 0.0), "{values:?}");
-            prop_assert!((law.cdf(k) + law.survival(k) - 1.0).abs() <= 4e-16);
+            prop_assert!((law.bounces().cdf(k) + law.bounces().survival(k) - 1.0).abs() <= 4e-16);
             if x.is_finite() {
                 prop_assert!(law.wrapped_variance(x, v)? >= v / p);
             }
@@ -270,14 +304,14 @@ proptest! {
     fn quantile_is_the_smallest_k_whose_cdf_reaches_u(p in probability(), u in probability(), k in 0u64..1000) {
         prop_assume!(p > 0.0);
         let law = roulette(p);
-        let quantile = law.quantile(u)?;
+        let quantile = law.bounces().quantile(u)?;
         if u < 1.0 && p < 1.0 {
-            prop_assert!(law.cdf(quantile) >= u);
-            prop_assert!(quantile == 0 || law.cdf(quantile - 1) < u);
+            prop_assert!(law.bounces().cdf(quantile) >= u);
+            prop_assert!(quantile == 0 || law.bounces().cdf(quantile - 1) < u);
         }
-        let reached = law.cdf(k);
-        if reached < 1.0 && (k == 0 || law.cdf(k - 1) < reached) {
-            prop_assert_eq!(law.quantile(reached)?, k);
+        let reached = law.bounces().cdf(k);
+        if reached < 1.0 && (k == 0 || law.bounces().cdf(k - 1) < reached) {
+            prop_assert_eq!(law.bounces().quantile(reached)?, k);
         }
     }
 }
@@ -305,9 +339,9 @@ fn assert_distributed(what: &str, mut sample: impl FnMut() -> u64, p: f64, n: us
 fn bounces_are_distributed_as_claimed_both_ways_and_as_rand_distr_has_them() {
     for (block, p) in [0.05, 0.2, 0.83, 0.99].into_iter().enumerate() {
         let mut rng = Stream::new(seed(21), block as u64);
-        let simulated = roulette(p).bounces_by_simulation().unwrap();
+        let simulated = roulette(p).bounces().by_simulation().unwrap();
         assert_distributed("simulation", || simulated.sample(&mut rng), p, 200_000);
-        let inverted = roulette(p).bounces_by_inversion().unwrap();
+        let inverted = roulette(p).bounces().by_inversion().unwrap();
         assert_distributed("inversion", || inverted.sample(&mut rng), p, 1_000_000);
     }
     // rand_distr counts failures, as we do: the shift is statrs' alone
@@ -321,9 +355,9 @@ fn bounces_have_their_exact_mean_and_variance() {
     for p in [0.2, 0.83] {
         let law = roulette(p);
         let (mean, variance) = (p / (1.0 - p), p / (1.0 - p).powi(2));
-        let simulated = law.bounces_by_simulation().unwrap();
+        let simulated = law.bounces().by_simulation().unwrap();
         assert_moments("simulation", &simulated, mean, variance, 300_000);
-        let inverted = law.bounces_by_inversion().unwrap();
+        let inverted = law.bounces().by_inversion().unwrap();
         assert_moments("inversion", &inverted, mean, variance, 1_000_000);
     }
 }
@@ -333,13 +367,13 @@ fn bounces_have_their_exact_mean_and_variance() {
 fn bounces_cost_what_they_are_said_to() {
     let (law, n) = (roulette(0.83), 100_000);
     let inverted =
-        Run::new(seed(31)).estimate(&law.bounces_by_inversion().unwrap(), Budget::Draws(n)).unwrap();
+        Run::new(seed(31)).estimate(&law.bounces().by_inversion().unwrap(), Budget::Draws(n)).unwrap();
     assert_eq!(inverted.cost.random_numbers, n);
     let simulated =
-        Run::new(seed(31)).estimate(&law.bounces_by_simulation().unwrap(), Budget::Draws(n)).unwrap();
+        Run::new(seed(31)).estimate(&law.bounces().by_simulation().unwrap(), Budget::Draws(n)).unwrap();
     let coins = simulated.cost.random_numbers as f64 / n as f64;
     assert_relative_eq!(coins, 1.0 + simulated.estimate.mean(), epsilon = 0.0, max_relative = 1e-12);
-    assert!((coins - 1.0 / 0.17).abs() <= Z * (law.variance() / n as f64).sqrt());
+    assert!((coins - 1.0 / 0.17).abs() <= Z * (law.bounces().variance() / n as f64).sqrt());
 }
 
 /// All of 20 draws below a tenth of the mean have probability (1 − e^(−0.1))²⁰ = 4e-21.
@@ -347,10 +381,11 @@ fn bounces_cost_what_they_are_said_to() {
 fn millions_of_bounces_need_no_stack() {
     let law = roulette(1.0 - 1e-7);
     let mut rng = Stream::new(seed(41), 0);
-    let simulated = law.bounces_by_simulation().unwrap();
+    let simulated = law.bounces().by_simulation().unwrap();
     assert!((0..20).map(|_| simulated.sample(&mut rng)).any(|bounces| bounces > 1_000_000));
     // the longest path there is: U = 1 − 2⁻⁵³ at p = 1 − 2⁻⁵³
-    let longest = roulette(NEARLY_ONE).bounces_by_inversion().unwrap().sample(&mut Bits::of(vec![u64::MAX]));
+    let longest =
+        roulette(NEARLY_ONE).bounces().by_inversion().unwrap().sample(&mut Bits::of(vec![u64::MAX]));
     assert_relative_eq!(
         longest as f64,
         53.0 * 2f64.ln() * 2f64.powi(53),
@@ -521,20 +556,25 @@ fn the_classic_mistakes_are_rejected_with_their_ratios() {
     assert_mistake("the zeros are dropped", &dropped, truth, 1.0 / p);
 
     let law = roulette(p);
-    let bounces = law.bounces_by_inversion().unwrap();
+    let bounces = law.bounces().by_inversion().unwrap();
     let plus_one = from_fn(|rng| bounces.draw(rng) + 1.0);
-    assert_mistake("N + 1", &plus_one, law.mean(), 1.0 / p);
-    let swapped = roulette(1.0 - p).bounces_by_inversion().unwrap();
-    assert_mistake("p and 1 − p swapped", &swapped, law.mean(), ((1.0 - p) / p).powi(2));
+    assert_mistake("N + 1", &plus_one, law.bounces().mean(), 1.0 / p);
+    let swapped = roulette(1.0 - p).bounces().by_inversion().unwrap();
+    assert_mistake("p and 1 − p swapped", &swapped, law.bounces().mean(), ((1.0 - p) / p).powi(2));
     let swapped_trials = from_fn(|rng| swapped.draw(rng) + 1.0);
-    assert_mistake("both", &swapped_trials, law.mean(), (1.0 - p) / (p * p));
+    assert_mistake("both", &swapped_trials, law.bounces().mean(), (1.0 - p) / (p * p));
     // a U that can be 0 and a logarithm to base 10
     let base_10 = from_fn(|rng| ((1.0 - rng.uniform()).log10() / p.ln()).floor());
     let ln10 = 10f64.ln();
     let tail = p.powf(ln10);
-    assert_mistake("log10 for one ln", &base_10, law.mean(), tail / (1.0 - tail) / law.mean());
+    assert_mistake(
+        "log10 for one ln",
+        &base_10,
+        law.bounces().mean(),
+        tail / (1.0 - tail) / law.bounces().mean(),
+    );
     let rounded = from_fn(|rng| ((1.0 - rng.uniform()).ln() / p.ln()).round());
-    assert_mistake("rounded, not floored", &rounded, law.mean(), p.powf(-0.5));
+    assert_mistake("rounded, not floored", &rounded, law.bounces().mean(), p.powf(-0.5));
 }
 
 #[test]
@@ -902,8 +942,8 @@ fn a_fifth_is_unbiased_but_usually_too_dark() {
 #[test]
 fn intervals_cover_the_truth() {
     let room = if std::env::var_os("UNBIASED_SEED").is_some() { 0.0204 } else { 0.01 };
-    let bounces = |p: f64| Box::new(roulette(p).bounces_by_inversion().unwrap()) as Box<dyn Estimator>;
-    let coins = |p: f64| Box::new(roulette(p).bounces_by_simulation().unwrap()) as Box<dyn Estimator>;
+    let bounces = |p: f64| Box::new(roulette(p).bounces().by_inversion().unwrap()) as Box<dyn Estimator>;
+    let coins = |p: f64| Box::new(roulette(p).bounces().by_simulation().unwrap()) as Box<dyn Estimator>;
     let is = |k: f64, bounces: Box<dyn Estimator>| {
         Box::new(from_fn(move |rng| f64::from(u8::from(bounces.draw(rng) == k)))) as Box<dyn Estimator>
     };
@@ -947,9 +987,9 @@ fn golden_values() {
         draws
     };
     let law = roulette(0.83);
-    assert_eq!(four(&law.bounces_by_simulation().unwrap()), [12.0, 0.0, 0.0, 0.0]);
+    assert_eq!(four(&law.bounces().by_simulation().unwrap()), [12.0, 0.0, 0.0, 0.0]);
     // drawn side by side; by a separate program, as in tests/run.rs
-    assert_eq!(four(&law.bounces_by_inversion().unwrap()), [2.0, 11.0, 11.0, 21.0]);
+    assert_eq!(four(&law.bounces().by_inversion().unwrap()), [2.0, 11.0, 11.0, 21.0]);
     assert_eq!(four(&law.wrap(from_fn(|rng| rng.uniform()))), [0.631270439979652, 0.0, 0.0, 0.0]);
     assert_eq!(
         four(&light(0.61, 0.3).roulette(0.83).unwrap()),

@@ -796,7 +796,7 @@ fn furnaces_by_roulette() {
 fn furnaces_by_weight() {
     let parameters = (albedos_of_furnaces(), ways(), 1..9i32, any::<bool>());
     certify("furnaces_by_weight", parameters, |(albedo, (_, light), cut, filled)| {
-        let paths = paths(furnace(albedo), Bounces::AllByWeight, (Hemisphere::Cosine, light));
+        let paths = paths(furnace(albedo), Bounces::AllByThroughput, (Hemisphere::Cosine, light));
         let truth = (0..cut).map(|j| albedo.powi(j)).sum();
         case(CutOff { paths, most: cut.into(), filled }, truth, cut.into())
     });
@@ -853,14 +853,14 @@ fn of_bounces() -> impl Strategy<Value = (f64, i32, bool)> + Clone {
 #[test]
 fn bounces_by_simulation() {
     certify("bounces_by_simulation", of_bounces(), |(p, k, exact)| {
-        bounces(Roulette::new(p).unwrap().bounces_by_simulation().unwrap(), p, k, exact)
+        bounces(Roulette::new(p).unwrap().bounces().by_simulation().unwrap(), p, k, exact)
     });
 }
 
 #[test]
 fn bounces_by_inversion() {
     certify("bounces_by_inversion", of_bounces(), |(p, k, exact)| {
-        bounces(Roulette::new(p).unwrap().bounces_by_inversion().unwrap(), p, k, exact)
+        bounces(Roulette::new(p).unwrap().bounces().by_inversion().unwrap(), p, k, exact)
     });
 }
 
@@ -871,7 +871,7 @@ fn samplers_of_section_5() {
         let roulette = Roulette::new(p).unwrap();
         let cdf = |n: f64| if n < 0.0 { 0.0 } else { 1.0 - p.powf(n.floor() + 1.0) };
         let (one, other) =
-            (roulette.bounces_by_simulation().unwrap(), roulette.bounces_by_inversion().unwrap());
+            (roulette.bounces().by_simulation().unwrap(), roulette.bounces().by_inversion().unwrap());
         let samplers: [&dyn Estimator; 2] = [&one, &other];
         for (j, sampler) in samplers.into_iter().enumerate() {
             let seed = common::seed(1000 + 10 * i as u64 + j as u64);
@@ -956,7 +956,7 @@ proptest! {
     #[test]
     fn bounces_by_inversion_exactly(m in 1..4i32, cut in 1..8i32) {
         let p = 0.5f64.powi(m);
-        let n = Roulette::new(p).unwrap().bounces_by_inversion().unwrap();
+        let n = Roulette::new(p).unwrap().bounces().by_inversion().unwrap();
         let mean: f64 = (1..=cut).map(|j| p.powi(j)).sum();
         // E min(N, c)² = Σ (2j − 1) P(N ≥ j)
         let square: f64 = (1..=cut).map(|j| f64::from(2 * j - 1) * p.powi(j)).sum();

@@ -161,13 +161,13 @@ fn evaluate(row: &Row) -> Result<Found, Error> {
         "exp_mean" => exponential()?.mean().into(),
         "exp_var" => exponential()?.variance().into(),
 
-        "geom_pmf" => bounces()?.pmf(row.count("n")).into(),
-        "geom_sf" => bounces()?.survival(row.count("n")).into(),
-        "geom_cdf" => bounces()?.cdf(row.count("n")).into(),
-        "geom_mean" => bounces()?.mean().into(),
-        "geom_var" | "geom_var_wrong_order" => bounces()?.variance().into(),
+        "geom_pmf" => bounces()?.bounces().pmf(row.count("n")).into(),
+        "geom_sf" => bounces()?.bounces().survival(row.count("n")).into(),
+        "geom_cdf" => bounces()?.bounces().cdf(row.count("n")).into(),
+        "geom_mean" => bounces()?.bounces().mean().into(),
+        "geom_var" | "geom_var_wrong_order" => bounces()?.bounces().variance().into(),
         "geom_inv" => {
-            let law = bounces()?.bounces_by_inversion()?;
+            let law = bounces()?.bounces().by_inversion()?;
             // the sampler's U is 1 − u
             let u = 1.0 - x("u");
             if is_drawn(u) && 1.0 - u == x("u") {

@@ -68,7 +68,7 @@ fn all_light_in_the_furnace_side_by_side() {
             emission: 1.0,
             ..Scene::default()
         };
-        for bounces in [Bounces::All((1.0 + albedo) / 2.0), Bounces::AllByWeight] {
+        for bounces in [Bounces::All((1.0 + albedo) / 2.0), Bounces::AllByThroughput] {
             for directions in Hemisphere::ALL {
                 let (uniform, truth) = (directions == Hemisphere::Uniform, 1.0 / (1.0 - albedo));
                 if uniform && albedo > 0.8 {
@@ -137,7 +137,7 @@ fn what_leaves_f32_is_an_error() {
         )
     );
     assert_eq!(of(dark(1e-9), Bounces::UpTo(64)), Ok(()));
-    for bounces in [Bounces::UpTo(2), Bounces::AllByWeight, Bounces::All(0.5), Bounces::Exactly(2)] {
+    for bounces in [Bounces::UpTo(2), Bounces::AllByThroughput, Bounces::All(0.5), Bounces::Exactly(2)] {
         assert!(of(dark(1e-13), bounces).is_err());
     }
     assert_eq!(of(dark(1e-13), Bounces::UpTo(1)), Ok(()));
@@ -164,7 +164,7 @@ fn what_leaves_f32_is_an_error() {
 #[test]
 fn drawn_and_filled_have_the_same_moments() {
     let mut pairs: Vec<(String, Box<dyn Estimator>)> = Vec::new();
-    for bounces in [Bounces::UpTo(3), Bounces::All(0.7), Bounces::AllByWeight] {
+    for bounces in [Bounces::UpTo(3), Bounces::All(0.7), Bounces::AllByThroughput] {
         for paths in every_way(bounces) {
             pairs.push((format!("{paths:?}"), Box::new(paths)));
         }
@@ -173,7 +173,7 @@ fn drawn_and_filled_have_the_same_moments() {
     let surface = Lambertian::new(0.8).unwrap();
     let light = |direction: &unbiased::hemisphere::Direction| 1.0 + direction.vector().x;
     pairs.push(("exponential".into(), Box::new(Exponential::new(0.37).unwrap())));
-    pairs.push(("bounces".into(), Box::new(Roulette::new(0.8).unwrap().bounces_by_inversion().unwrap())));
+    pairs.push(("bounces".into(), Box::new(Roulette::new(0.8).unwrap().bounces().by_inversion().unwrap())));
     pairs.push(("square".into(), Box::new(square.independent(|x, y| Integrand::Gaussian.at(x, y)))));
     pairs.push(("cosine".into(), Box::new(surface.cosine_estimator(light))));
     pairs.push(("uniform".into(), Box::new(surface.uniform_estimator(light))));
@@ -215,13 +215,13 @@ fn wide_ones() -> Vec<(&'static str, Box<dyn Estimator>)> {
     let light = |direction: &unbiased::hemisphere::Direction| 1.0 + direction.vector().x;
     vec![
         ("exponential", Box::new(Exponential::new(0.37).unwrap())),
-        ("bounces", Box::new(Roulette::new(0.8).unwrap().bounces_by_inversion().unwrap())),
+        ("bounces", Box::new(Roulette::new(0.8).unwrap().bounces().by_inversion().unwrap())),
         ("square", Box::new(Rectangle::WORKSHEET.independent(|x, y| Integrand::Gaussian.at(x, y)))),
         ("cosine", Box::new(surface.cosine_estimator(light))),
         ("uniform", Box::new(surface.uniform_estimator(light))),
         ("up to 3", Box::new(by(Bounces::UpTo(3)))),
         ("all", Box::new(by(Bounces::All(0.7)))),
-        ("by weight", Box::new(by(Bounces::AllByWeight))),
+        ("by weight", Box::new(by(Bounces::AllByThroughput))),
         ("in f32", Box::new(by(Bounces::UpTo(3)).in_f32().unwrap())),
     ]
 }

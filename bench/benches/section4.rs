@@ -11,7 +11,8 @@ fn main() {
     divan::main();
 }
 
-const BOUNCES: [&str; 6] = ["up to 1", "up to 2", "up to 3", "up to 15", "all, q = 0.7", "all, by weight"];
+const BOUNCES: [&str; 6] =
+    ["up to 1", "up to 2", "up to 3", "up to 15", "all, q = 0.7", "all, by throughput"];
 
 fn paths(name: &str) -> Paths {
     let bounces = match name {
@@ -20,7 +21,7 @@ fn paths(name: &str) -> Paths {
         "up to 3" => Bounces::UpTo(3),
         "up to 15" => Bounces::UpTo(15),
         "all, q = 0.7" => Bounces::All(0.7),
-        _ => Bounces::AllByWeight,
+        _ => Bounces::AllByThroughput,
     };
     let room = BoxRoom::new(Scene::default()).unwrap();
     Paths::new(room, bounces, Hemisphere::Cosine, FindLight::BySampling).unwrap()

@@ -17,19 +17,21 @@ fn uniform_numbers(bencher: Bencher) {
 
 #[divan::bench]
 fn by_inversion_filled(bencher: Bencher) {
-    let (bounces, mut rng) = (Roulette::new(0.8).unwrap().bounces_by_inversion().unwrap(), Stream::new(1, 0));
+    let (bounces, mut rng) =
+        (Roulette::new(0.8).unwrap().bounces().by_inversion().unwrap(), Stream::new(1, 0));
     bencher.bench_local(|| sum_of_filled(&bounces, &mut rng, 1));
 }
 
 #[divan::bench]
 fn by_inversion_drawn(bencher: Bencher) {
-    let (bounces, mut rng) = (Roulette::new(0.8).unwrap().bounces_by_inversion().unwrap(), Stream::new(1, 0));
+    let (bounces, mut rng) =
+        (Roulette::new(0.8).unwrap().bounces().by_inversion().unwrap(), Stream::new(1, 0));
     bencher.bench_local(|| sum_of_drawn(&bounces, &mut rng, 1));
 }
 
 #[divan::bench]
 fn by_coins(bencher: Bencher) {
     let (bounces, mut rng) =
-        (Roulette::new(0.8).unwrap().bounces_by_simulation().unwrap(), Stream::new(1, 0));
+        (Roulette::new(0.8).unwrap().bounces().by_simulation().unwrap(), Stream::new(1, 0));
     bencher.bench_local(|| sum_of_drawn(&bounces, &mut rng, 1));
 }

@@ -17,6 +17,7 @@ use unbiased::hemisphere::Hemisphere;
 use unbiased::inversion::Exponential;
 use unbiased::lambertian::Lambertian;
 use unbiased::paths::{Bounces, FindLight, Paths};
+use unbiased::placement::sobol;
 use unbiased::rectangle::Rectangle;
 use unbiased::roulette::Roulette;
 use unbiased::{Budget, Estimator, Run, Stream, from_fn};
@@ -30,11 +31,20 @@ const BOUNCES: [u32; 4] = [1, 2, 3, 15];
 #[derive(Default)]
 struct Best(BTreeMap<String, f64>);
 
+/// Independent replicates of a set of paths, at least: fewer do not know their error.
+const REPLICATES: f64 = 16.0;
+
+/// Paths a set for Mitsuba's samplers, squares all of them, and Sobol points for ours.
+const SETS: [u64; 3] = [1 << 10, 1 << 14, 1 << 18];
+const SOBOL: [u64; 5] = [1 << 8, 1 << 10, 1 << 12, 1 << 14, 1 << 16];
+
 /// A peer's paths: the best time of one, and all that was found of the variance of one over the mean's square.
 #[derive(Default)]
 struct PeerPaths {
     seconds: Option<f64>,
     variances: Vec<f64>,
+    /// Paths of a set that depend on each other.
+    set: f64,
 }
 
 impl PeerPaths {
@@ -47,7 +57,7 @@ impl PeerPaths {
     /// To a relative std error of 1e-4.
     fn seconds(&self) -> Option<f64> {
         let variance = self.variances.iter().sum::<f64>() / self.variances.len() as f64;
-        Some(self.seconds? * variance / 1e-8)
+        Some(self.seconds? * (variance / 1e-8).max(REPLICATES * self.set))
     }
 }
 
@@ -78,7 +88,7 @@ fn ours(best: &mut Best) {
     let bell = Rectangle::WORKSHEET.independent(|x, y| fast::exp(-x * x - y * y));
     let cosine = cube.cosine_estimator(|direction| 1.0 + direction.vector().x);
     let uniform = cube.uniform_estimator(|direction| 1.0 + direction.vector().x);
-    let bounces = Roulette::new(black_box(0.8)).unwrap().bounces_by_inversion().unwrap();
+    let bounces = Roulette::new(black_box(0.8)).unwrap().bounces().by_inversion().unwrap();
     let rows: [(&str, &dyn Estimator); 7] = [
         ("one uniform", &uniforms::<1>()),
         ("two uniforms", &uniforms::<2>()),
@@ -127,6 +137,19 @@ fn ours(best: &mut Best) {
                 best.take(&format!("{name}: {most} bounces"), seconds);
             }
         }
+        for points in SOBOL {
+            let placed = sobol(paths, points).unwrap();
+            // the variance of a set is known to 9 %
+            let sets = 256;
+            for seed in 0..3 {
+                let start = Instant::now();
+                let found = Run::new(seed).estimate(&placed, Budget::Draws(sets)).unwrap().estimate;
+                let relative = found.std_error().unwrap() / found.mean() / 1e-4;
+                let needed = (sets as f64 * relative * relative).max(REPLICATES);
+                let seconds = start.elapsed().as_secs_f64() / sets as f64 * needed;
+                best.take(&format!("sobol {points}: {most} bounces"), seconds);
+            }
+        }
     }
 }
 
@@ -165,16 +188,30 @@ fn main() {
                 best.take(&format!("numpy: {row}"), ns);
             }
         });
-        for (variant, renders, spp) in [("llvm_ad_mono", "12", "1000000"), ("scalar_rgb", "2", "100000")] {
+        let independent = |variant, renders: u64, spp: u64| (variant, "independent", renders, spp);
+        let mut rows =
+            vec![independent("llvm_ad_mono", 12, 1_000_000), independent("scalar_rgb", 2, 100_000)];
+        // once: a set's variance is known to 18 %
+        for sampler in ["stratified", "multijitter", "orthogonal"].into_iter().filter(|_| turn == 1) {
+            rows.extend(SETS.map(|spp| ("llvm_ad_mono", sampler, 64, spp)));
+        }
+        for (variant, sampler, renders, spp) in rows {
             let seed = (1000 * turn).to_string();
             let bounces = BOUNCES.map(|most| most.to_string());
-            let mut arguments = vec![variant, renders, spp, &seed];
+            let [renders, spp_text] = [renders, spp].map(|number| number.to_string());
+            let mut arguments = vec![variant, sampler, &renders, &spp_text, &seed];
             arguments.extend(bounces.iter().map(String::as_str));
             peer(&mut best, "mitsuba_box.py", &arguments, |_, value| {
                 let numbers = [&value["bounces"], &value["paths_per_second"], &value["variance"]]
                     .map(serde_json::Value::as_f64);
                 if let [Some(bounces), Some(rate), Some(variance)] = numbers {
-                    mitsuba.entry(format!("{variant}: {bounces} bounces")).or_default().take(rate, variance);
+                    let row = match sampler {
+                        "independent" => format!("{variant}: {bounces} bounces"),
+                        _ => format!("{sampler} {spp}: {bounces} bounces"),
+                    };
+                    let paths = mitsuba.entry(row).or_default();
+                    paths.set = if sampler == "independent" { 1.0 } else { spp as f64 };
+                    paths.take(rate, variance);
                 }
             });
         }
@@ -185,8 +222,11 @@ fn main() {
         }
     }
     for (row, time) in &best.0 {
-        let unit =
-            if row.ends_with("bounces") && !row.starts_with(['o', 'n']) { "s to 1e-4" } else { "ns a draw" };
+        let unit = if row.ends_with("bounces") && !row.starts_with("ours") && !row.starts_with("numpy") {
+            "s to 1e-4"
+        } else {
+            "ns a draw"
+        };
         println!("{row:32} {time:12.6} {unit}");
     }
     println!("\n| what | required | goal | measured |\n|---|---|---|---|");
@@ -232,6 +272,31 @@ fn main() {
             let what = format!("{most} bounce{s}, Mitsuba's {variant} over {ours}, seconds to 1e-4");
             print(&what, required, goal, ratio);
         }
+    }
+    let least = |names: &[&str], most: u32| {
+        let rows = best.0.iter().filter(|(row, _)| {
+            row.ends_with(&format!(": {most} bounces")) && names.iter().any(|name| row.starts_with(name))
+        });
+        rows.map(|(_, seconds)| *seconds).reduce(f64::min)
+    };
+    for (most, [required, goal, required_best, goal_best]) in BOUNCES.into_iter().zip([
+        ["≥ 100", "≥ 1000", "≥ 20", "≥ 100"],
+        ["≥ 200", "≥ 1000", "≥ 40", "≥ 200"],
+        ["≥ 60", "≥ 200", "≥ 20", "≥ 60"],
+        ["≥ 40", "≥ 100", "≥ 12", "≥ 40"],
+    ]) {
+        let s = if most == 1 { "" } else { "s" };
+        let over = |peers: &[&str]| Some(least(peers, most)? / least(&["sobol"], most)?);
+        let what =
+            format!("{most} bounce{s}, Mitsuba's llvm_ad_mono over f64 with Sobol points, seconds to 1e-4");
+        print(&what, required, goal, over(&["llvm_ad_mono"]));
+        let what = format!("{most} bounce{s}, the best of Mitsuba's samplers over the same");
+        print(
+            &what,
+            required_best,
+            goal_best,
+            over(&["llvm_ad_mono", "stratified", "multijitter", "orthogonal"]),
+        );
     }
     print(
         "estimate, over a loop that draws and sums",

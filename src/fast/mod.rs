@@ -82,7 +82,7 @@ pub(crate) mod tests {
     fn wide_and_narrow_loops_have_the_same_bits() {
         let square = Rectangle::WORKSHEET;
         let cube = Lambertian::new(0.8).unwrap();
-        let bounces = Roulette::new(0.83).unwrap().bounces_by_inversion().unwrap();
+        let bounces = Roulette::new(0.83).unwrap().bounces().by_inversion().unwrap();
         let estimators: [Box<dyn Estimator>; 7] = [
             Box::new(Exponential::new(0.37).unwrap()),
             Box::new(Exponential::new(1e-320).unwrap()),

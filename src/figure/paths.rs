@@ -364,13 +364,13 @@ pub fn path_errors(room: &BoxRoom, seed: u64) -> Result<Vec<Figure>> {
     }
     let mut endings = Vec::new();
     // an albedo too large for the weight to end a path: nothing else is known to be right then
-    if let Ok(by_weight) = paths(Bounces::AllByWeight) {
+    if let Ok(by_weight) = paths(Bounces::AllByThroughput) {
         let all = reference(&by_weight, seed)?;
         for (label, ink, marker, bounces) in [
             ("k ≤ 2", Ink::Purple, Marker::Cross, Bounces::UpTo(2)),
             ("k ≤ 4", Ink::Green, Marker::Triangle, Bounces::UpTo(4)),
             ("roulette q = 0.8", Ink::Vermilion, Marker::Square, Bounces::All(0.8)),
-            ("roulette by weight", Ink::Blue, Marker::Disc, Bounces::AllByWeight),
+            ("roulette by throughput", Ink::Blue, Marker::Disc, Bounces::AllByThroughput),
         ] {
             let paths = paths(bounces)?;
             if paths.caution().is_none() {

@@ -17,10 +17,10 @@ pub fn bounces(p_rr: [f64; 2], draws: usize, seed: u64) -> Result<Figure> {
     for p in p_rr {
         let roulette = Roulette::new(p)?;
         // up to the bounce that 99 of 100 rays do not reach
-        let last = roulette.quantile(0.99)?.clamp(5, 60);
+        let last = roulette.bounces().quantile(0.99)?.clamp(5, 60);
         let tallest = (1.0 - p).max(0.05);
         let mut counts = vec![0u32; last as usize + 1];
-        let (mut rng, sampler) = (Stream::new(seed, 0), roulette.bounces_by_simulation()?);
+        let (mut rng, sampler) = (Stream::new(seed, 0), roulette.bounces().by_simulation()?);
         for _ in 0..draws {
             if let Some(count) = counts.get_mut(sampler.draw(&mut rng) as usize) {
                 *count += 1;
@@ -39,9 +39,9 @@ pub fn bounces(p_rr: [f64; 2], draws: usize, seed: u64) -> Result<Figure> {
             Axis::linear("number of bounces k", -0.7, last as f64 + 0.7).with_ticks(ticks),
             Axis::linear("P(N = k)", 0.0, 1.15 * tallest),
         );
-        let mean = roulette.mean();
+        let mean = roulette.bounces().mean();
         panel
-            .bars("exact", Ink::Blue, 0.8, (0..=last).map(|k| [k as f64, roulette.pmf(k)]))
+            .bars("exact", Ink::Blue, 0.8, (0..=last).map(|k| [k as f64, roulette.bounces().pmf(k)]))
             .error_bars("measured", Ink::Black, Marker::Disc, measured)
             .text(Ink::Blue, [last as f64, 1.02 * tallest], Side::Left, "bars: pᵏ(1 − p)")
             .text(
@@ -79,10 +79,12 @@ pub fn bounces(p_rr: [f64; 2], draws: usize, seed: u64) -> Result<Figure> {
 /// # Errors
 /// If it cannot be drawn.
 pub fn mean_bounces(draws: u64, seed: u64) -> Result<Figure> {
-    let of = |p: f64| Roulette::new(p).map(|roulette| (roulette.mean(), roulette.variance().sqrt()));
+    let of = |p: f64| {
+        Roulette::new(p).map(|roulette| (roulette.bounces().mean(), roulette.bounces().variance().sqrt()))
+    };
     let mut measured = Vec::new();
     for p in [0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9] {
-        let found = estimate(&Roulette::new(p)?.bounces_by_inversion()?, Budget::Draws(draws), seed)?;
+        let found = estimate(&Roulette::new(p)?.bounces().by_inversion()?, Budget::Draws(draws), seed)?;
         measured.push([p, found.mean()]);
     }
     let curve = (1..=990).map(|i| f64::from(i) / 1000.0);

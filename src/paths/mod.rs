@@ -13,7 +13,7 @@
 //!   If L_o(p_j) is the light reflected *once* at p_j, this is the part of two bounces. What matters is its mean: an unbiased estimate L̂_o(p_j) in its place, drawn
 //!   afresh for each ω_ij, leaves the whole unbiased. [`reflected`] is this estimator, with any L̂_o plugged in.
 //! - **5** If L̂_o(p_j) is this very estimator, the path goes on from p_j to p_j′ and for ever; written out, without recursion, it is a loop along one path with the
-//!   product of its weights f_r cos θ/p. Roulette ends it: it goes on with probability q, its weight divided by q, so the mean stays. [`Paths`] is that loop.
+//!   product of its throughputs f_r cos θ/p. Roulette ends it: it goes on with probability q, its throughput divided by q, so the mean stays. [`Paths`] is that loop.
 //!
 //! # What a bounce is
 //! A bounce is a vertex of the path between the light and the eye. L_o(p) = Σ L_k, with L_k the light after k bounces: k = 0 is what p itself emits, k = 1
@@ -59,8 +59,8 @@ pub enum Bounces {
     UpTo(u32),
     /// All light. A path goes on with this probability q after every vertex.
     All(f64),
-    /// All light. A path goes on with probability min(1, w), w being its weight: it becomes 1 if the path goes on.
-    AllByWeight,
+    /// All light. A path goes on with probability min(1, w), w being its throughput: it becomes 1 if the path goes on.
+    AllByThroughput,
 }
 
 /// The most bounces that can be counted one by one.
@@ -101,7 +101,7 @@ pub struct Paths {
 enum Ending {
     Never,
     Roulette(f64),
-    ByWeight,
+    ByThroughput,
 }
 
 impl Paths {
@@ -109,7 +109,7 @@ impl Paths {
     ///
     /// # Errors
     /// If there are more than [`MOST_BOUNCES`] to be counted; if q is not in (0, 0.9999\], for at 1 a path would never end; or if paths end by their
-    /// weight and an albedo is above 0.999, where they hardly would.
+    /// throughput and an albedo is above 0.999, where they hardly would.
     pub fn new(room: BoxRoom, bounces: Bounces, directions: Hemisphere, light: FindLight) -> Result<Self> {
         let count = |k: u32| {
             require_count(
@@ -137,11 +137,11 @@ impl Paths {
                 )?;
                 ([0, u32::MAX], Ending::Roulette(q))
             }
-            Bounces::AllByWeight => {
+            Bounces::AllByThroughput => {
                 let albedo = most_albedo(&room);
                 let allowed = "at most 0.999 where nothing but absorption ends a path (or choose a q or a number of bounces)";
                 require("the largest albedo", albedo, albedo <= MOST_ALBEDO, allowed)?;
-                ([0, u32::MAX], Ending::ByWeight)
+                ([0, u32::MAX], Ending::ByThroughput)
             }
         };
         Ok(Self { room, counted, ending, directions, light })
@@ -156,7 +156,7 @@ impl Paths {
     /// weakest.
     ///
     /// # Errors
-    /// If a path's weight would leave `f32`: if the smallest albedo but 0 is below 1e-25 to the power of the fewest bounces that count (two, if fewer do and so many may); or if the faces emit
+    /// If a path's throughput would leave `f32`: if the smallest albedo but 0 is below 1e-25 to the power of the fewest bounces that count (two, if fewer do and so many may); or if the faces emit
     /// less than 1e-10 of L_e A/π, or of L_e where light is found by chance.
     ///
     /// ```
@@ -177,9 +177,9 @@ impl Paths {
         let [fewest, most] = self.counted;
         // at most 64
         let bounces = fewest.max(most.min(2)) as i32;
-        let weight = albedos.fold(1.0, f64::min).powi(bounces);
+        let throughput = albedos.fold(1.0, f64::min).powi(bounces);
         let allowed = "at least 1e-25 in single precision";
-        require("the least albedo, to the power of the bounces,", weight, weight >= 1e-25, allowed)?;
+        require("the least albedo, to the power of the bounces,", throughput, throughput >= 1e-25, allowed)?;
         let part = scene.emission / self.light();
         let ok = part == 0.0 || part.is_nan() || part >= 1e-10;
         let allowed = "0 or at least 1e-10 in single precision";
@@ -192,7 +192,7 @@ impl Paths {
         self.light == FindLight::BySampling && self.room.scene().light_half_width > 0.0
     }
 
-    /// What a path of weight 1 finds where it finds the light, but for the geometry of a sample.
+    /// What a path of throughput 1 finds where it finds the light, but for the geometry of a sample.
     fn light(&self) -> f64 {
         match self.light {
             FindLight::BySampling => power(&self.room),
@@ -229,10 +229,10 @@ impl Paths {
 
     /// Why error bars are not to be trusted, if they are not: the variance may be infinite, or so few paths hold most of it that a run of a million does not meet them.
     ///
-    /// A path's squared weight grows by E\[(ρ cos θ/(π p(ω)))²\]/q a bounce, times the q of going on: ρ²/q with cosine directions, (4/3)ρ²/q with uniform ones. It must
+    /// A path's squared throughput grows by E\[(ρ cos θ/(π p(ω)))²\]/q a bounce, times the q of going on: ρ²/q with cosine directions, (4/3)ρ²/q with uniform ones. It must
     /// stay below 1 for the largest albedo ρ to be safe. And light samples near the light's edge have an infinite variance where the light touches a wall.
     ///
-    /// An error bar from n draws has itself a relative error of about √(κ/4n), with κ = E X⁴/(E X²)². A weight made of k uniform directions has
+    /// An error bar from n draws has itself a relative error of about √(κ/4n), with κ = E X⁴/(E X²)². A throughput made of k uniform directions has
     /// κ = ((16/5)/(4/3)²)ᵏ = (9/5)ᵏ, whatever the albedo, and light that one path in m finds by chance m times that. From κ = 10⁶ on it is told; in so many draws or fewer, error bars are
     /// mostly too short. For a sum up to K bounces κ is at most (Σ (16/5)^(k/4) ρᵏ)⁴/(E X²)², and by chance m is estimated from the light's part of all faces.
     /// Samples of a light at the distance a from the walls, taken from there, have κ of about 8/a³: with c, d and y the way down, across and along, E Xⁿ is in proportion to
@@ -263,10 +263,10 @@ impl Paths {
                     "{infinite} q = {q} is not above {shown} = {growth:.4} for the largest albedo"
                 ));
             }
-            // cosine's weights never exceed 1 then, and uniform ones grow while they do
-            Ending::ByWeight if self.directions == Hemisphere::Uniform && growth >= 1.0 => {
+            // cosine's throughputs never exceed 1 then, and uniform ones grow while they do
+            Ending::ByThroughput if self.directions == Hemisphere::Uniform && growth >= 1.0 => {
                 return Some(format!(
-                    "{infinite} the squared weight of a path grows by {shown} = {growth:.4} a bounce for the largest albedo, and nothing ends a path of weight 1 or more"
+                    "{infinite} the squared throughput of a path grows by {shown} = {growth:.4} a bounce for the largest albedo, and nothing ends a path of throughput 1 or more"
                 ));
             }
             _ => {}
@@ -278,8 +278,8 @@ impl Paths {
         }
         let reasons = [
             (
-                self.kurtosis_of_weights(),
-                "uniform directions make most weights far too small and a few very large",
+                self.kurtosis_of_throughputs(),
+                "uniform directions make most throughputs far too small and a few very large",
             ),
             (1.0 / self.found_by_chance(), "few paths find the light"),
             (
@@ -306,7 +306,7 @@ impl Paths {
     }
 
     /// E X⁴/(E X²)² of what a path that is never ended finds, or more, in a room where every vertex sees the same light.
-    fn kurtosis_of_weights(&self) -> f64 {
+    fn kurtosis_of_throughputs(&self) -> f64 {
         if self.ending != Ending::Never || self.directions == Hemisphere::Cosine {
             return 1.0;
         }
@@ -377,12 +377,12 @@ impl Paths {
         let [fewest, most] = self.counted;
         let sampled = self.samples_light();
         let last = self.last();
-        let (mut vertex, mut weight, mut light, mut bounces) = (*start, 1.0, 0.0, 0);
+        let (mut vertex, mut throughput, mut light, mut bounces) = (*start, 1.0, 0.0, 0);
         loop {
             see(Event::Vertex(&vertex));
             let found_already = sampled && bounces > 0 && self.room.is_light(&vertex);
             if bounces >= fewest && !found_already {
-                light += weight * self.room.emitted(&vertex);
+                light += throughput * self.room.emitted(&vertex);
             }
             let albedo = self.room.albedo(&vertex);
             if bounces >= most || albedo == 0.0 {
@@ -391,37 +391,37 @@ impl Paths {
             if sampled && bounces + 1 >= fewest {
                 let sample = self.room.sample_light(&vertex, rng);
                 see(Event::Light { point: sample.point, visible: sample.visible });
-                light += weight * albedo * std::f64::consts::FRAC_1_PI * sample.irradiance;
+                light += throughput * albedo * std::f64::consts::FRAC_1_PI * sample.irradiance;
             }
             if bounces >= last {
                 break;
             }
             let direction = self.directions.sample(rng);
-            weight *= albedo * self.cosine_over_pdf(&direction);
+            throughput *= albedo * self.cosine_over_pdf(&direction);
             if self.ending != Ending::Never {
-                let q = self.goes_on(weight);
+                let q = self.goes_on(throughput);
                 if rng.uniform() >= q {
                     break;
                 }
-                weight /= q;
+                throughput /= q;
             }
             rng.count_evaluations(1);
             vertex = nearest(vertex.position(), vertex.to_room(&direction));
             bounces = bounces.saturating_add(1);
-            if weight == 0.0 {
+            if throughput == 0.0 {
                 break; // too small for f64: nothing is added from here on
             }
         }
         light
     }
 
-    /// With what probability a path of this weight goes on: rounded up to the grid of the uniform numbers, on which it is kept exactly.
+    /// With what probability a path of this throughput goes on: rounded up to the grid of the uniform numbers, on which it is kept exactly.
     #[inline(always)]
-    fn goes_on<T: Real>(&self, weight: T) -> T {
+    fn goes_on<T: Real>(&self, throughput: T) -> T {
         match self.ending {
             Ending::Never => T::of(1.0),
             Ending::Roulette(q) => on_the_grid(T::of(q).most(T::STEP)),
-            Ending::ByWeight => by_weight(weight),
+            Ending::ByThroughput => by_throughput(throughput),
         }
     }
 
@@ -498,8 +498,8 @@ fn most_albedo(room: &BoxRoom) -> f64 {
 
 /// The probability min(1, w) of going on.
 #[inline(always)]
-fn by_weight<T: Real>(weight: T) -> T {
-    on_the_grid(weight.least(T::of(1.0)))
+fn by_throughput<T: Real>(throughput: T) -> T {
+    on_the_grid(throughput.least(T::of(1.0)))
 }
 
 /// A probability rounded up to the grid of the uniform numbers.

@@ -2,12 +2,12 @@
 //! numbers.
 //!
 //! Faces are not told apart one by one. A ray ends on a plane across one axis, where the normal is three numbers, one of them ±1 against the ray and the
-//! others 0, and the coordinate on that axis is set exactly, as in the plain loop. A path that has ended goes on with weight 0: where roulette ends it, until the next one takes
+//! others 0, and the coordinate on that axis is set exactly, as in the plain loop. A path that has ended goes on with throughput 0: where roulette ends it, until the next one takes
 //! its lane.
 
 use pulp::NullaryFnOnce;
 
-use super::{Ending, Paths, by_weight, power};
+use super::{Ending, Paths, by_throughput, power};
 use crate::box_room::{BoxRoom, Face};
 use crate::fast::{Real, widest};
 use crate::hemisphere::Hemisphere;
@@ -55,7 +55,7 @@ pub(super) fn draw<T: Real>(paths: &Paths, rng: &mut Stream) -> f64 {
     light[0]
 }
 
-/// Where the paths of a row are, what they weigh there, and the light that each has found.
+/// Where the paths of a row are, their throughput there, and the light that each has found.
 #[derive(Clone, Copy)]
 struct Front<T> {
     x: Each<T>,
@@ -65,7 +65,7 @@ struct Front<T> {
     normal_y: Each<T>,
     normal_z: Each<T>,
     albedo: Each<T>,
-    weight: Each<T>,
+    throughput: Each<T>,
     light: Each<T>,
 }
 
@@ -79,7 +79,7 @@ impl<T: Real> Front<T> {
         self.normal_y[lane] = start.normal_y[lane];
         self.normal_z[lane] = start.normal_z[lane];
         self.albedo[lane] = start.albedo[lane];
-        self.weight[lane] = start.weight[lane];
+        self.throughput[lane] = start.throughput[lane];
         self.light[lane] = start.light[lane];
     }
 }
@@ -112,7 +112,7 @@ impl<'a, T: Real> Walk<'a, T> {
             normal_y: all(normal.y),
             normal_z: all(normal.z),
             albedo: all(paths.room.albedo(&start)),
-            weight: all(1.0),
+            throughput: all(1.0),
             light: all(emitted / scale),
         };
         Self { paths, room: Room::new(&paths.room, scale), start, sampled, scale }
@@ -125,10 +125,10 @@ impl<'a, T: Real> Walk<'a, T> {
         // lanes before the first path and beyond the last
         let end = (lane + draws.len() - 1) % LANES + 1;
         if let Some(front) = fronts.first_mut() {
-            front.weight[..lane].fill(T::of(0.0));
+            front.throughput[..lane].fill(T::of(0.0));
         }
         if let Some(front) = fronts.last_mut() {
-            front.weight[end..].fill(T::of(0.0));
+            front.throughput[end..].fill(T::of(0.0));
         }
         let ([fewest, most], last) = (self.paths.counted, self.paths.last());
         let (mut taken, mut rays) = (0, 0);
@@ -160,7 +160,7 @@ impl<'a, T: Real> Walk<'a, T> {
         let mut fronts = [self.start];
         for lane in 0..LANES {
             if abreast.draw(lane).is_none() {
-                fronts[0].weight[lane] = T::of(0.0);
+                fronts[0].throughput[lane] = T::of(0.0);
             }
         }
         let mut numbers = [[T::of(0.0); LANES]; 5];
@@ -169,13 +169,13 @@ impl<'a, T: Real> Walk<'a, T> {
         loop {
             let [front] = &mut fronts;
             for lane in 0..LANES {
-                while (front.weight[lane] == T::of(0.0)) | (front.albedo[lane] == T::of(0.0))
+                while (front.throughput[lane] == T::of(0.0)) | (front.albedo[lane] == T::of(0.0))
                     && let Some(draw) = abreast.draw(lane)
                 {
                     draws[draw] = front.light[lane].to_f64() * self.scale;
                     front.begin(lane, &self.start);
                     if !abreast.next_draw(lane) {
-                        front.weight[lane] = T::of(0.0);
+                        front.throughput[lane] = T::of(0.0);
                     }
                 }
             }
@@ -202,12 +202,12 @@ impl<'a, T: Real> Walk<'a, T> {
     }
 
     /// Follows every path that goes on to its next vertex, whose own light counts if `counted`. Returns the rays.
-    fn go(&self, fronts: &mut [Front<T>], numbers: Numbers<'_, T>, weigh: bool, counted: bool) -> u64 {
+    fn go(&self, fronts: &mut [Front<T>], numbers: Numbers<'_, T>, reflect: bool, counted: bool) -> u64 {
         let Self { room, paths, .. } = *self;
         let of_faces = if counted { room.emission } else { T::of(0.0) };
         let of_light = if counted && !self.sampled { room.radiance } else { T::of(0.0) };
         let (directions, emitted) = (paths.directions, [of_faces, of_light]);
-        widest(Go { room, fronts, numbers, lanes: LANES, directions, weigh, emitted })
+        widest(Go { room, fronts, numbers, lanes: LANES, directions, reflect, emitted })
     }
 }
 
@@ -344,14 +344,14 @@ fn sample<T: Real>(
         let at = [front.x[lane], front.y[lane], front.z[lane]];
         let normal = [front.normal_x[lane], front.normal_y[lane], front.normal_z[lane]];
         let (sent, ray) = room.lit(at, normal, [u[lane], v[lane]]);
-        let reflected = front.weight[lane] * front.albedo[lane];
+        let reflected = front.throughput[lane] * front.albedo[lane];
         front.light[lane] = front.light[lane] + reflected * sent;
         let counts = ray & (reflected != zero);
         rays[lane] = rays[lane] + if counts { one } else { zero };
     }
 }
 
-/// Roulette: weights times f_r cos θ/p(ω), and which paths go on.
+/// Roulette: throughputs times f_r cos θ/p(ω), and which paths go on.
 struct End<'a, T> {
     paths: &'a Paths,
     front: &'a mut Front<T>,
@@ -367,17 +367,17 @@ impl<T: Real> NullaryFnOnce for End<'_, T> {
     fn call(self) {
         let one = T::of(1.0);
         match self.paths.directions {
-            Hemisphere::Cosine => self.weigh(|_| one),
-            Hemisphere::Uniform => self.weigh(|u| T::of(2.0) * (one - u)),
+            Hemisphere::Cosine => self.reflect(|_| one),
+            Hemisphere::Uniform => self.reflect(|u| T::of(2.0) * (one - u)),
         }
     }
 }
 
 impl<T: Real> End<'_, T> {
     #[inline(always)]
-    fn weigh(self, cosine: impl Fn(T) -> T) {
+    fn reflect(self, cosine: impl Fn(T) -> T) {
         match self.paths.ending {
-            Ending::ByWeight => self.end(cosine, by_weight),
+            Ending::ByThroughput => self.end(cosine, by_throughput),
             _ => {
                 let q = self.paths.goes_on(T::of(1.0));
                 self.end(cosine, |_| q);
@@ -388,13 +388,13 @@ impl<T: Real> End<'_, T> {
     #[inline(always)]
     fn end(self, cosine: impl Fn(T) -> T, goes_on: impl Fn(T) -> T) {
         let (front, [u, _]) = (self.front, self.numbers.of(0));
-        let mut weight = front.weight;
+        let mut throughput = front.throughput;
         for lane in 0..self.lanes.min(LANES) {
-            let reflected = weight[lane] * (front.albedo[lane] * cosine(u[lane]));
+            let reflected = throughput[lane] * (front.albedo[lane] * cosine(u[lane]));
             let q = goes_on(reflected);
-            weight[lane] = if self.coins[lane] < q { reflected / q } else { T::of(0.0) };
+            throughput[lane] = if self.coins[lane] < q { reflected / q } else { T::of(0.0) };
         }
-        front.weight = weight;
+        front.throughput = throughput;
     }
 }
 
@@ -405,8 +405,8 @@ struct Go<'a, T> {
     numbers: Numbers<'a, T>,
     lanes: usize,
     directions: Hemisphere,
-    /// Whether weights are still to be multiplied by f_r cos θ/p(ω).
-    weigh: bool,
+    /// Whether throughputs are still to be multiplied by f_r cos θ/p(ω).
+    reflect: bool,
     /// By the faces and by the light.
     emitted: [T; 2],
 }
@@ -431,7 +431,8 @@ impl<T: Real> Go<'_, T> {
     fn along(self, of_theta: impl Fn(T) -> [T; 3]) -> u64 {
         let mut alive = [T::of(0.0); LANES];
         for (row, front) in self.fronts.iter_mut().enumerate() {
-            let step = Step { room: self.room, emitted: self.emitted, lanes: self.lanes, weigh: self.weigh };
+            let step =
+                Step { room: self.room, emitted: self.emitted, lanes: self.lanes, reflect: self.reflect };
             step.go(&of_theta, self.numbers.of(row), front, &mut alive);
         }
         total(alive)
@@ -443,7 +444,7 @@ struct Step<T> {
     room: Room<T>,
     emitted: [T; 2],
     lanes: usize,
-    weigh: bool,
+    reflect: bool,
 }
 
 impl<T: Real> Step<T> {
@@ -456,8 +457,8 @@ impl<T: Real> Step<T> {
         front: &mut Front<T>,
         alive: &mut Each<T>,
     ) {
-        let Self { room, emitted, lanes, weigh } = *self;
-        let Front { x, y, z, normal_x, normal_y, normal_z, albedo, weight, light } = front;
+        let Self { room, emitted, lanes, reflect } = *self;
+        let Front { x, y, z, normal_x, normal_y, normal_z, albedo, throughput, light } = front;
         let (zero, one) = (T::of(0.0), T::of(1.0));
         let [wall, cube_wall] = [T::of(Face::ROOM_HALF_WIDTH), T::of(Face::CUBE_HALF_WIDTH)];
         let [height, cube_height] = [T::of(Face::ROOM_HEIGHT), T::of(Face::CUBE_HEIGHT)];
@@ -467,7 +468,7 @@ impl<T: Real> Step<T> {
             let normal = [normal_x[lane], normal_y[lane], normal_z[lane]];
             // the direction in the face's own frame, and in the room
             let [sin_theta, cos_theta, cosine] = of_theta(u[lane]);
-            weight[lane] = weight[lane] * if weigh { albedo[lane] * cosine } else { one };
+            throughput[lane] = throughput[lane] * if reflect { albedo[lane] * cosine } else { one };
             let (sin_phi, cos_phi) = v[lane].sin_cos_of_turns();
             let (one_way, other_way) = (sin_theta * cos_phi, sin_theta * sin_phi);
             let [across_x, across_y, across_z] = normal.map(|n| n != zero);
@@ -520,14 +521,14 @@ impl<T: Real> Step<T> {
             let of_face = if is_cube { room.cube_albedo } else { room.wall_albedo };
             albedo[lane] = if is_light { zero } else { of_face };
             let emitted = if is_light { emitted[1] } else { emitted[0] };
-            light[lane] = light[lane] + weight[lane] * emitted;
+            light[lane] = light[lane] + throughput[lane] * emitted;
             x[lane] = new_x;
             y[lane] = new_y;
             z[lane] = new_z;
             normal_x[lane] = n[0];
             normal_y[lane] = n[1];
             normal_z[lane] = n[2];
-            alive[lane] = alive[lane] + if weight[lane] != zero { one } else { zero };
+            alive[lane] = alive[lane] + if throughput[lane] != zero { one } else { zero };
         }
     }
 }
@@ -555,7 +556,7 @@ mod tests {
         ];
         let bounces = [0, 1, 2, 3, 15].map(Bounces::Exactly).into_iter();
         let bounces = bounces.chain([0, 1, 4].map(Bounces::UpTo));
-        for bounces in bounces.chain([Bounces::All(0.6), Bounces::AllByWeight]) {
+        for bounces in bounces.chain([Bounces::All(0.6), Bounces::AllByThroughput]) {
             for scene in scenes {
                 for directions in Hemisphere::ALL {
                     for light in FindLight::ALL {
@@ -652,7 +653,7 @@ mod tests {
     #[test]
     fn any_number_of_draws_is_filled() {
         let room = BoxRoom::new(Scene { emission: 0.3, ..Scene::default() }).unwrap();
-        for bounces in [Bounces::UpTo(3), Bounces::All(0.5), Bounces::AllByWeight] {
+        for bounces in [Bounces::UpTo(3), Bounces::All(0.5), Bounces::AllByThroughput] {
             let paths = Paths::new(room, bounces, Hemisphere::Uniform, FindLight::BySampling).unwrap();
             for count in [0, 1, 31, 32, 33, 255, 256, 257, 1000] {
                 let mut draws = vec![f64::NAN; count];

@@ -3,15 +3,45 @@
 use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
 
-use super::{P_RR, Roulette, one_minus_power, power};
+use super::{P_RR, Roulette, coin, one_minus_power, power};
 use crate::error::{Result, require};
 use crate::estimator::{Estimator, from_uniforms};
 use crate::extended::Extended;
 use crate::fast;
 use crate::stream::Stream;
 
-/// The law of N. At p_rr = 1 a path never ends: N is infinite, so that every P(N = k) is 0.
-impl Roulette {
+/// The law of the number of bounces N ≥ 0 of a path that goes on with probability p_rr after each: P(N = k) = p_rrᵏ (1 − p_rr).
+///
+/// These are the *failures* before the first success of a coin that ends the path with probability 1 − p_rr. Some libraries call the number of
+/// *trials*, N + 1, geometric instead. At p_rr = 1 a path never ends: N is infinite, so that every P(N = k) is 0. (Worksheet 5.1 to 5.3.)
+///
+/// ```
+/// use unbiased::roulette::BounceCount;
+///
+/// let bounces = BounceCount::new(0.75)?;
+/// assert_eq!(bounces.pmf(0), 1.0 / 4.0);
+/// assert_eq!(bounces.pmf(2), 9.0 / 64.0);
+/// assert_eq!(bounces.mean(), 3.0);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BounceCount {
+    p_rr: f64,
+}
+
+impl BounceCount {
+    /// The law for this probability of going on.
+    ///
+    /// # Errors
+    /// Those of [`Roulette::new`].
+    pub fn new(p_rr: f64) -> Result<Self> {
+        Ok(Roulette::new(p_rr)?.bounces())
+    }
+
+    pub(super) fn of(p_rr: f64) -> Self {
+        Self { p_rr }
+    }
+
     /// P(N = k) = pᵏ (1 − p).
     pub fn pmf(&self, k: u64) -> f64 {
         power(self.p_rr, k.into()) * (1.0 - self.p_rr)
@@ -46,9 +76,9 @@ impl Roulette {
     /// If u is not in \[0, 1\].
     ///
     /// ```
-    /// let roulette = unbiased::roulette::Roulette::new(0.5)?;
-    /// assert_eq!(roulette.quantile(0.75)?, 1);
-    /// assert_eq!(roulette.quantile(0.76)?, 2);
+    /// let bounces = unbiased::roulette::BounceCount::new(0.5)?;
+    /// assert_eq!(bounces.quantile(0.75)?, 1);
+    /// assert_eq!(bounces.quantile(0.76)?, 2);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
     pub fn quantile(&self, u: f64) -> Result<u64> {
@@ -75,16 +105,16 @@ impl Roulette {
     /// If p_rr = 1: a draw would never end.
     ///
     /// ```
-    /// use unbiased::{Budget, estimate, roulette::Roulette};
+    /// use unbiased::{Budget, estimate, roulette::BounceCount};
     ///
-    /// let roulette = Roulette::new(0.8)?;
-    /// let estimate = estimate(&roulette.bounces_by_simulation()?, Budget::Draws(100_000), 1)?;
+    /// let bounces = BounceCount::new(0.8)?;
+    /// let estimate = estimate(&bounces.by_simulation()?, Budget::Draws(100_000), 1)?;
     /// assert!(estimate.z(4.0).unwrap().abs() < 5.0);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
-    pub fn bounces_by_simulation(&self) -> Result<BouncesBySimulation> {
+    pub fn by_simulation(&self) -> Result<BouncesBySimulation> {
         self.require_an_end()?;
-        Ok(BouncesBySimulation { roulette: *self })
+        Ok(BouncesBySimulation { p_rr: self.p_rr })
     }
 
     /// N drawn in one step, ⌊ln(1 − U)/ln p⌋, whatever p is.
@@ -93,14 +123,14 @@ impl Roulette {
     /// If p_rr = 1: N is infinite.
     ///
     /// ```
-    /// use unbiased::{Budget, estimate, roulette::Roulette};
+    /// use unbiased::{Budget, estimate, roulette::BounceCount};
     ///
-    /// let roulette = Roulette::new(0.8)?;
-    /// let estimate = estimate(&roulette.bounces_by_inversion()?, Budget::Draws(100_000), 1)?;
+    /// let bounces = BounceCount::new(0.8)?;
+    /// let estimate = estimate(&bounces.by_inversion()?, Budget::Draws(100_000), 1)?;
     /// assert!(estimate.z(4.0).unwrap().abs() < 5.0);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
-    pub fn bounces_by_inversion(&self) -> Result<BouncesByInversion> {
+    pub fn by_inversion(&self) -> Result<BouncesByInversion> {
         self.require_an_end()?;
         Ok(BouncesByInversion { per_ln: 1.0 / self.p_rr.ln() })
     }
@@ -110,20 +140,20 @@ impl Roulette {
     }
 }
 
-/// N by flipping coins; see [`Roulette::bounces_by_simulation`].
+/// N by flipping coins; see [`BounceCount::by_simulation`].
 ///
 /// # The ends
 /// n bounces or more have probability pⁿ, and take n coins: without end only on a generator that is stuck below p.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BouncesBySimulation {
-    roulette: Roulette,
+    p_rr: f64,
 }
 
 impl Distribution<u64> for BouncesBySimulation {
     #[inline]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> u64 {
         let mut bounces = 0;
-        while self.roulette.continues(rng) {
+        while coin(rng, self.p_rr) {
             bounces += 1;
         }
         bounces
@@ -138,7 +168,7 @@ impl Estimator for BouncesBySimulation {
     }
 }
 
-/// N = ⌊ln(1 − U)/ln p⌋; see [`Roulette::bounces_by_inversion`].
+/// N = ⌊ln(1 − U)/ln p⌋; see [`BounceCount::by_inversion`].
 ///
 /// # The ends
 /// U = k·2⁻⁵³ is never 1, so the tail of N ends at 53 ln 2/−ln p, beyond which its probability is below 2⁻⁵³: at 164 bounces for p = 4/5, and

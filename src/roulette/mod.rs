@@ -1,7 +1,7 @@
 //! Section 5: Russian roulette, which ends paths at random and loses nothing on average.
 //!
 //! X_rr = X/p_rr with probability p_rr, else 0, so E\[X_rr\] = E\[X\]. [`Roulette`] flips the coin, [`Roulette::wrap`] plays it on
-//! any estimator, the number of bounces N that it allows has its laws in closed form, and [`LightModel`] says exactly
+//! any estimator, [`BounceCount`] is the number N of bounces that it allows, with its laws in closed form, and [`LightModel`] says exactly
 //! what roulette costs and what it buys.
 //!
 //! One's own estimator for question 5.1 is checked by `examples/check_mine.rs`.
@@ -17,23 +17,19 @@ use crate::stream::Stream;
 mod bounces;
 mod light;
 
-pub use bounces::{BouncesByInversion, BouncesBySimulation};
+pub use bounces::{BounceCount, BouncesByInversion, BouncesBySimulation};
 pub use light::{LightModel, RoulettePaths, TruncatedPaths};
 
 /// Russian roulette with continuation probability p_rr.
 ///
-/// A path that goes on with probability p_rr after every bounce makes N ≥ 0 bounces, P(N = k) = p_rrᵏ (1 − p_rr): the
-/// *failures* before the first success of a coin that ends the path with probability 1 − p_rr. Some libraries call the number of
-/// *trials*, N + 1, geometric instead. (Worksheet 5.1 to 5.3; Arvo & Kirk, "Particle transport and image synthesis", 1990;
-/// *Physically Based Rendering*, 4th ed., section 2.2.4.)
+/// It is a coin; how often it lets a path go on is [`BounceCount`]. (Worksheet 5; Arvo & Kirk, "Particle transport and image
+/// synthesis", 1990; *Physically Based Rendering*, 4th ed., section 2.2.4.)
 ///
 /// ```
 /// use unbiased::roulette::Roulette;
 ///
 /// let roulette = Roulette::new(0.75)?;
-/// assert_eq!(roulette.pmf(0), 1.0 / 4.0);
-/// assert_eq!(roulette.pmf(2), 9.0 / 64.0);
-/// assert_eq!(roulette.mean(), 3.0);
+/// assert_eq!(roulette.bounces().mean(), 3.0);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,6 +50,11 @@ impl Roulette {
     /// The continuation probability p_rr.
     pub fn p_rr(&self) -> f64 {
         self.p_rr
+    }
+
+    /// The number of bounces that it allows.
+    pub fn bounces(&self) -> BounceCount {
+        BounceCount::of(self.p_rr)
     }
 
     /// Flips the coin: true, to continue, with probability p_rr exactly, for every p_rr that `f64` can hold.

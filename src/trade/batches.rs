@@ -293,7 +293,7 @@ mod tests {
     #[test]
     fn light_tails_are_not_marked() {
         let room = BoxRoom::new(Scene::default()).unwrap();
-        let by_weight = Paths::new(room, Bounces::AllByWeight, Cosine, FindLight::BySampling).unwrap();
+        let by_weight = Paths::new(room, Bounces::AllByThroughput, Cosine, FindLight::BySampling).unwrap();
         assert!(alarms(2000, 1024, &Exponential::new(1.0).unwrap()) <= 19);
         assert!(alarms(100, 1 << 14, &Exponential::new(1.0).unwrap()) <= 5);
         assert!(alarms(500, 1024, &by_weight) <= 9);

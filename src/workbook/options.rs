@@ -36,7 +36,7 @@ pub struct Options {
     pub json: bool,
     /// For whom.
     pub edition: Edition,
-    /// Which shard of every run, and of how many.
+    /// Which shard of every run, and of how many. A shard needs no figures.
     pub shard: Option<[u64; 2]>,
     /// The shards of which every run is put together instead.
     pub(super) shards: Option<Rc<Shards>>,

@@ -75,7 +75,7 @@ impl Probe {
     /// If p_rr is not strictly between 0 and 1.
     pub fn bounces(p_rr: f64) -> Result<Self> {
         require_chance(p_rr)?;
-        let truth = Roulette::new(p_rr)?.mean();
+        let truth = Roulette::new(p_rr)?.bounces().mean();
         Ok(Self { setup: Setup::Bounces { p_rr }, truth, unit: truth })
     }
 
