@@ -60,7 +60,7 @@ pub fn answer(options: &Options) -> Result<Appendix> {
             [&precisions],
         ),
         table(
-            "3.5, 5.3 and 4.3: independent numbers, and as many better placed ones, ranked for each estimator on their own",
+            "3.5, 5.3 and 4.3 (k bounces): independent numbers, and as many better placed ones, ranked for each estimator on their own",
             &placements,
         ),
     ];
@@ -270,23 +270,23 @@ fn placements(trade: impl Fn(f64) -> Result<Trade>) -> Result<Vec<Compared>> {
             [ring.reflected(surface), 0.0],
         ),
         ("5.3", "the model, q = 0.8", Box::new(model.roulette(0.8)?), [model.mean(), 0.0]),
-        ("4.3", "up to 1", Box::new(up_to(1)?), [once, 0.0]),
+        ("4.3", "k ≤ 1", Box::new(up_to(1)?), [once, 0.0]),
         (
             "4.3",
-            "2, L_o(p_j) known",
+            "k = 2, L_o(p_j) known",
             Box::new(reflected(room, Cosine, move |p_j, _| room.direct(p_j))),
             [two, 0.0],
         ),
         ("4.3", TWO, Box::new(up_to(2)?), [once + two, 0.0]),
-        ("4.3", "up to 3", Box::new(up_to(3)?), UP_TO_3),
+        ("4.3", "k ≤ 3", Box::new(up_to(3)?), UP_TO_3),
         ("4.3", FIFTEEN, Box::new(up_to(15)?), UP_TO_15),
     ];
     let mut found = Vec::new();
     for (question, what, estimator, [truth, truth_error]) in compared {
         let rivals = [
-            Rival::new(format!("{what}: independent"), &*estimator),
-            Rival::new(format!("{what}: jittered, 64²"), jittered(&*estimator, 64)?),
-            Rival::new(format!("{what}: Sobol, 4096"), sobol(&*estimator, 4096)?),
+            Rival::new(format!("independent: {what}"), &*estimator),
+            Rival::new(format!("jittered 64²: {what}"), jittered(&*estimator, 64)?),
+            Rival::new(format!("Sobol 4096: {what}"), sobol(&*estimator, 4096)?),
         ];
         let trade = trade(truth)?;
         let trade = if truth_error > 0.0 { trade.known_to(truth_error)? } else { trade };
@@ -299,8 +299,8 @@ fn placements(trade: impl Fn(f64) -> Result<Trade>) -> Result<Vec<Compared>> {
     Ok(found)
 }
 
-const TWO: &str = "up to 2";
-const FIFTEEN: &str = "up to 15";
+const TWO: &str = "k ≤ 2";
+const FIFTEEN: &str = "k ≤ 15";
 
 /// Estimates and their std errors, for no closed forms are known: 20,000 and 3,000 sets of 65,536 Sobol points (cosine directions, the light sampled).
 const UP_TO_3: [f64; 2] = [0.335_016_21, 2.4e-7];

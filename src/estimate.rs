@@ -12,8 +12,8 @@ use pulp::NullaryFnOnce;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, require};
-use crate::extended::two_sum;
 use crate::fast::widest;
+use crate::float::two_sum;
 use crate::quantile::student_t;
 
 /// Draws summed in one two-pass sweep: they stay in the first-level cache between the passes.

@@ -10,8 +10,8 @@ use rand::distr::{Distribution, StandardUniform};
 
 use crate::error::{Error, Result, require};
 use crate::estimator::{Density, Estimator, from_uniforms};
-use crate::extended::Extended;
 use crate::fast;
+use crate::float::Extended;
 use crate::stream::Stream;
 
 /// The exponential distribution with rate λ: p(x) = λ e^(−λx) for x ≥ 0.

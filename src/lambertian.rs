@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 use crate::error::{Result, require};
 use crate::estimator::{Density, Estimator, f_over_p, from_uniforms};
-use crate::extended::Extended;
+use crate::float::Extended;
 use crate::hemisphere::{Direction, Hemisphere};
 
 /// A diffuse surface: it reflects the part ρ of the light that falls on it, the same radiance in all directions.

@@ -59,10 +59,10 @@ pub mod check;
 pub mod error;
 pub mod estimate;
 pub mod estimator;
-mod extended;
 pub mod fast;
 #[cfg(feature = "workbook")]
 pub mod figure;
+mod float;
 pub mod hemisphere;
 pub mod inversion;
 pub mod lambertian;

@@ -175,3 +175,14 @@ fn sines_of_turns_are_within_2_ulp() {
         assert_eq!(sin_cos_of_turns(v), exact);
     }
 }
+
+/// Of whole numbers, their neighbours and halves, and numbers of every size.
+#[test]
+fn the_whole_part_is_the_librarys() {
+    let powers = (0..=60).map(|power| 2f64.powi(power));
+    let near = powers.flat_map(|x| [x, x.next_up(), x.next_down(), x + 0.5, 3.0 * x, 3.0 * x + 0.25]);
+    let sizes = (-320..=308).map(|power| 1.7 * 10f64.powi(power));
+    for x in near.chain(sizes).chain([0.0, 0.5, f64::MAX, f64::MIN_POSITIVE, f64::INFINITY]) {
+        assert_eq!(unbiased::fast::floor(x), x.floor(), "{x:e}");
+    }
+}

@@ -495,6 +495,15 @@ fn roulette_in_the_furnace_is_exact() {
     }
 }
 
+/// A q between two points of the grid goes on with the upper one's probability, and the light is divided by that.
+#[test]
+fn a_q_between_grid_points_is_the_upper_one() {
+    let step = 2f64.powi(-53);
+    let seldom = paths(furnace(0.5), All(1.5 * step), (Cosine, ByChance));
+    let script = [0.3, 0.4, step, 0.3, 0.4, 2.0 * step];
+    assert_eq!(seldom.draw(&mut Stream::scripted(&script)), 1.0 + 0.5 / (2.0 * step));
+}
+
 /// All bounces by drawing, where no draw is bounded, too: ρ² or (4/3)ρ² is below q.
 #[test]
 fn the_furnace_without_a_limit() {

@@ -36,7 +36,7 @@ const REPLICATES: f64 = 16.0;
 
 /// Paths a set for Mitsuba's samplers, squares all of them, and Sobol points for ours.
 const SETS: [u64; 3] = [1 << 10, 1 << 14, 1 << 18];
-const SOBOL: [u64; 5] = [1 << 8, 1 << 10, 1 << 12, 1 << 14, 1 << 16];
+const SOBOL: [u64; 6] = [1 << 6, 1 << 8, 1 << 10, 1 << 12, 1 << 14, 1 << 16];
 
 /// A peer's paths: the best time of one, and all that was found of the variance of one over the mean's square.
 #[derive(Default)]
@@ -180,8 +180,9 @@ fn peer(
 fn main() {
     let mut best = Best::default();
     let mut mitsuba: BTreeMap<String, PeerPaths> = BTreeMap::new();
-    for turn in 1..=TURNS {
-        eprintln!("turn {turn} of {TURNS}");
+    let turns = std::env::args().nth(1).and_then(|turns| turns.parse().ok()).unwrap_or(TURNS);
+    for turn in 1..=turns {
+        eprintln!("turn {turn} of {turns}");
         ours(&mut best);
         peer(&mut best, "numpy_draws.py", &["65536"], |best, value| {
             if let (Some(row), Some(ns)) = (value["row"].as_str(), value["ns"].as_f64()) {

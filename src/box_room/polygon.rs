@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::volume::volume_sign;
-use crate::extended::two_sum;
+use crate::float::two_sum;
 
 /// The part P of the cosine-weighted hemisphere above `point` that a plane polygon fills: P = |Σ Θᵢ Γᵢ·n|/(2π), in \[0, 1\].
 ///

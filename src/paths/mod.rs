@@ -94,6 +94,8 @@ pub struct Paths {
     ending: Ending,
     directions: Hemisphere,
     light: FindLight,
+    /// What [`numbers_of_each`](Self::numbers_of_each) found.
+    numbers: u64,
 }
 
 /// What ends a path before its bounces do.
@@ -144,7 +146,8 @@ impl Paths {
                 ([0, u32::MAX], Ending::ByThroughput)
             }
         };
-        Ok(Self { room, counted, ending, directions, light })
+        let paths = Self { room, counted, ending, directions, light, numbers: 0 };
+        Ok(Self { numbers: paths.numbers_of_each(), ..paths })
     }
 
     /// The same paths computed in `f32`, in about half the time, along the same paths from the same numbers: speed against accuracy. Draws are summed in `f64` all the same.
@@ -426,7 +429,7 @@ impl Paths {
     }
 
     /// The numbers that every path takes, whether it needs them or not, where roulette does not end it.
-    fn numbers(&self) -> u64 {
+    fn numbers_of_each(&self) -> u64 {
         let [fewest, most] = self.counted;
         if self.ending != Ending::Never || most == 0 {
             return 0;
@@ -456,7 +459,7 @@ impl Estimator for Paths {
     #[inline]
     fn draw(&self, rng: &mut Stream) -> f64 {
         // paths side by side all take as many numbers
-        let end = rng.random_numbers() + self.numbers();
+        let end = rng.random_numbers() + self.numbers;
         let light = self.light_from(&self.room.point(), rng);
         rng.skip_to(end);
         light

@@ -28,7 +28,7 @@ pub(super) fn fill<T: Real>(paths: &Paths, rng: &mut Stream, draws: &mut [f64]) 
         walk.one_after_another(&mut abreast, draws);
         return abreast.finish();
     }
-    let each = paths.numbers() as usize;
+    let each = paths.numbers as usize;
     let most = (NUMBERS / each.max(1)).clamp(1, ROWS);
     let sets = most.min(draws.len().div_ceil(LANES) + 1);
     let mut numbers = vec![[T::of(0.0); LANES]; each * sets];
@@ -48,7 +48,7 @@ pub(super) fn draw<T: Real>(paths: &Paths, rng: &mut Stream) -> f64 {
     if paths.ending != Ending::Never {
         walk.one_after_another(&mut rng.alone(), &mut light);
     } else {
-        let mut numbers = vec![[T::of(0.0); LANES]; paths.numbers() as usize];
+        let mut numbers = vec![[T::of(0.0); LANES]; paths.numbers as usize];
         rng.alone().numbers(&mut numbers);
         rng.count_evaluations(walk.together(&numbers, 1, 0, &mut light));
     }

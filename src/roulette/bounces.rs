@@ -6,8 +6,8 @@ use rand::distr::{Distribution, StandardUniform};
 use super::{P_RR, Roulette, coin, one_minus_power, power};
 use crate::error::{Result, require};
 use crate::estimator::{Estimator, from_uniforms};
-use crate::extended::Extended;
 use crate::fast;
+use crate::float::Extended;
 use crate::stream::Stream;
 
 /// The law of the number of bounces N ≥ 0 of a path that goes on with probability p_rr after each: P(N = k) = p_rrᵏ (1 − p_rr).

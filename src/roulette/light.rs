@@ -3,7 +3,7 @@
 use super::coin;
 use crate::error::{Result, require, require_count};
 use crate::estimator::Estimator;
-use crate::extended::Extended;
+use crate::float::Extended;
 use crate::stream::Stream;
 
 /// A model of light paths: vertex k = 0, 1, … sees the light with probability v, independently of the others, and what it sees

@@ -11,7 +11,7 @@ use rand::distr::{Distribution, StandardUniform};
 
 use crate::error::{Result, require};
 use crate::estimator::Estimator;
-use crate::extended::Extended;
+use crate::float::Extended;
 use crate::stream::Stream;
 
 mod bounces;
