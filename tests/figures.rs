@@ -225,8 +225,8 @@ fn all_light_falls_to_its_truth_where_hardly_anything_is_absorbed() {
     let figures = figure::path_errors(&room, 1).unwrap();
     assert!(series(&figures[0], "roulette q = 0.8").is_empty(), "its variance may be infinite");
     // the points come before the line
-    let by_weight = series(&figures[0], "roulette by throughput");
-    let [[_, few, ..], _, [_, many, ..], ..] = by_weight[..] else { panic!("{by_weight:?}") };
+    let by_throughput = series(&figures[0], "roulette by throughput");
+    let [[_, few, ..], _, [_, many, ..], ..] = by_throughput[..] else { panic!("{by_throughput:?}") };
     let ratio = few / many;
     assert!((4.0..16.0).contains(&ratio), "from 16 to 1,024 paths the error falls by 8, not by {ratio}");
 }

@@ -472,16 +472,16 @@ fn the_furnace_is_exact_with_uniform_directions() {
 fn roulette_in_the_furnace_is_exact() {
     let mut phi = Stream::new(common::seed(422), 0);
     for albedo in ALBEDOS {
-        let by_weight = paths(furnace(albedo), AllByThroughput, (Cosine, ByChance));
+        let by_throughput = paths(furnace(albedo), AllByThroughput, (Cosine, ByChance));
         for (q, by_q) in [0.3, 0.75, albedo, 0.9999]
             .map(|q| (q, paths(furnace(albedo), All(q), (Cosine, ByChance))))
             .into_iter()
             // by weight it goes on with probability ρ, and every vertex counts 1
-            .chain([(albedo, by_weight)])
+            .chain([(albedo, by_throughput)])
         {
             // the smallest number of the grid that does not go on, and the largest one that does; a weight that went on may be a hair below 1
             let above = (q * 2f64.powi(53)).ceil() * 2f64.powi(-53);
-            let below = above - if by_q == by_weight { 2f64.powi(-50) } else { 2f64.powi(-53) };
+            let below = above - if by_q == by_throughput { 2f64.powi(-50) } else { 2f64.powi(-53) };
             for bounces in 0..8 {
                 let mut script = Vec::new();
                 for coin in vec![below; bounces].into_iter().chain([above]) {

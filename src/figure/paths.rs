@@ -364,8 +364,8 @@ pub fn path_errors(room: &BoxRoom, seed: u64) -> Result<Vec<Figure>> {
     }
     let mut endings = Vec::new();
     // an albedo too large for the weight to end a path: nothing else is known to be right then
-    if let Ok(by_weight) = paths(Bounces::AllByThroughput) {
-        let all = reference(&by_weight, seed)?;
+    if let Ok(by_throughput) = paths(Bounces::AllByThroughput) {
+        let all = reference(&by_throughput, seed)?;
         for (label, ink, marker, bounces) in [
             ("k ≤ 2", Ink::Purple, Marker::Cross, Bounces::UpTo(2)),
             ("k ≤ 4", Ink::Green, Marker::Triangle, Bounces::UpTo(4)),

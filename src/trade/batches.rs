@@ -293,10 +293,11 @@ mod tests {
     #[test]
     fn light_tails_are_not_marked() {
         let room = BoxRoom::new(Scene::default()).unwrap();
-        let by_weight = Paths::new(room, Bounces::AllByThroughput, Cosine, FindLight::BySampling).unwrap();
+        let by_throughput =
+            Paths::new(room, Bounces::AllByThroughput, Cosine, FindLight::BySampling).unwrap();
         assert!(alarms(2000, 1024, &Exponential::new(1.0).unwrap()) <= 19);
         assert!(alarms(100, 1 << 14, &Exponential::new(1.0).unwrap()) <= 5);
-        assert!(alarms(500, 1024, &by_weight) <= 9);
+        assert!(alarms(500, 1024, &by_throughput) <= 9);
         // within 11 standard deviations: never
         let cosine = Lambertian::new(0.8).unwrap().estimator(|w| w.cos_theta().powi(10), Uniform);
         for n in [2, 100, 132, 1024, 1 << 14] {
