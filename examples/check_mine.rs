@@ -8,8 +8,8 @@
 //! mistakes that is consistent with. As it stands the file holds one of them for question 3.5, and a right estimator for 4.3:
 //! `-- --question 4.3`.
 //!
-//! A number worked out by hand is judged by `-- --question 1.2 --answer 0.602`, and draws from a program in any language by
-//! `-- --question 3.5 --draws-from -`, one a line on standard input.
+//! A number worked out by hand is judged by `-- --question 1.2 --answer 0.602`, and a program in another language by what it
+//! writes: `-- --help` says how.
 
 use std::process::ExitCode;
 
@@ -18,36 +18,41 @@ use unbiased::workbook;
 
 // ─────────────────────────────── your estimator ───────────────────────────────
 //
-// 1.1  Attempt::exponential(|rate, rng| …)               one sample
-// 2.1  Attempt::rectangle(|f, rectangle, rng| …)         one draw of ∫∫ f(x, y), over any rectangle:
-//                                                        let ([a, b], [c, d]) = (rectangle.x_range(), rectangle.y_range());
-// 3.4  Attempt::hemisphere(|light, albedo, rng| …)       one draw of the reflected radiance (3.5, too)
-// 4.3  Attempt::paths(|room, bounces, rng| …)            one draw of the light that leaves p, below
-// 5.1  Attempt::bounces(|p_rr, rng| …)                   one number of bounces
-// 5    Attempt::roulette(|x, p_rr, rng| …)               one X_rr, where x(rng) draws X
+// It is a closure of a problem p and of random numbers, rng.uniform() being uniform in [0, 1):
 //
-// rng.uniform() is a uniform number in [0, 1).
+// 1.1  |p: &Samples, rng|       one sample at the rate p.rate
+// 2.1  |p: &Integral, rng|      one draw of ∫∫ p.f(x, y) over p.rectangle; its ends: let [[a, b], [c, d]] = p.ends();
+// 3.4  |p: &Reflection, rng|    one draw of the radiance reflected under p.light(&direction) by p.albedo (3.5, too)
+// 4.3  |p: &LightOfPaths, rng|  one draw of the light that leaves p.room.point() after p.bounces(), below
+// 5.1  |p: &Bounces, rng|       one number of bounces at p.p_rr
+// 5    |p: &Wrapped, rng|       one X_rr at p.p_rr, where p.x(rng) draws X
+//
+// Each of these problems is in `unbiased::…::mistakes` of its topic.
 
 use rand::distr::Distribution;
 use unbiased::box_room::nearest_hit;
 use unbiased::hemisphere::Hemisphere;
+use unbiased::lambertian::mistakes::Reflection;
+use unbiased::paths::mistakes::LightOfPaths;
 
 /// The question that your estimator answers.
 const QUESTION: &str = "3.5";
 
 fn mine() -> Attempt<'static> {
-    Attempt::hemisphere(|light, albedo, rng| {
+    Attempt::new(|p: &Reflection, rng| {
         let direction = Hemisphere::Uniform.sample(rng);
-        albedo * light(&direction)
+        p.albedo * p.light(&direction)
     })
 }
 
-/// Question 4.3: the light that leaves `room.point()` after as many bounces as `bounces` holds, 2..=2 being exactly two.
+/// Question 4.3: the light that leaves p after as many bounces as `p.bounces()` holds, 2..=2 being exactly two.
 ///
-/// This one finds the light by chance. A point of the room, a vertex of the path, has a `position()` and a `normal()`, and the room knows what `emitted(&vertex)` and
-/// `albedo(&vertex)` are there; for a light sample there are `light_corners()`, `light_area()` and `unbiased::box_room::visible(&vertex, point)`.
+/// This one finds the light by chance. A point of the room, a vertex of the path, has a `position()` and a `normal()`, and the room knows
+/// what `emitted(&vertex)` and `albedo(&vertex)` are there; for a light sample there are `light_corners()`, `light_area()` and
+/// `unbiased::box_room::visible(&vertex, point)`.
 fn paths() -> Attempt<'static> {
-    Attempt::paths(|room, bounces, rng| {
+    Attempt::new(|p: &LightOfPaths, rng| {
+        let (room, bounces) = (&p.room, p.bounces());
         let (mut vertex, mut throughput, mut light) = (room.point(), 1.0, 0.0);
         for bounce in 0..=*bounces.end() {
             if bounces.contains(&bounce) {

@@ -5,8 +5,8 @@
 use std::process::ExitCode;
 
 use rand::distr::Distribution;
-use unbiased::check::Topic;
 use unbiased::hemisphere::{Direction, Hemisphere};
+use unbiased::lambertian::mistakes::Reflection;
 use unbiased::lambertian::{CosinePower, Lambertian, Light};
 use unbiased::placement::sobol;
 use unbiased::workbook::{self, Answer, Options};
@@ -40,7 +40,7 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
             .outcome(&options.run(&general, 1_000_000)?)
             .figure(figure::directions(Hemisphere::Cosine, 600, options.seed)?)
             .figure(figure::wealth(options.seed)?)
-            .figure(figure::mistakes(Topic::Hemisphere)?),
+            .figure(figure::mistakes::<Reflection>()?),
         row("reflected radiance, simplified").outcome(&options.run(&simplified, 1_000_000)?),
         row("reflected radiance, sets of 256 Sobol points")
             .outcome(&options.run(&sobol(&general, 256)?, 4000)?),

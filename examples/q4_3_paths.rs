@@ -6,8 +6,8 @@
 use std::process::ExitCode;
 
 use unbiased::box_room::BoxRoom;
-use unbiased::check::Topic;
 use unbiased::hemisphere::Hemisphere::{Cosine, Uniform};
+use unbiased::paths::mistakes::LightOfPaths;
 use unbiased::paths::{Bounces, FindLight, Paths, reflected};
 use unbiased::placement::sobol;
 use unbiased::workbook::{self, Answer, Options};
@@ -29,7 +29,7 @@ pub fn answer(options: &Options) -> Result<Vec<Answer>> {
             .figure(figure::two_bounces_converging(&room, options.seed)?)
             .figure(figure::occluded_fraction(200_000, options.seed)?)
             .figure(figure::radiance_by_bounces(&room, options.seed)?)
-            .figure(figure::mistakes(Topic::Paths)?);
+            .figure(figure::mistakes::<LightOfPaths>()?);
         for figure in figure::path_errors(&room, options.seed)? {
             drawings = drawings.figure(figure);
         }

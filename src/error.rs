@@ -1,5 +1,7 @@
 //! What can go wrong, said in one sentence each.
 
+use crate::numbers::rounded;
+
 /// Why a question could not be answered.
 ///
 /// Every variant says what was wrong, the value that was given and what is allowed, and displays as
@@ -55,6 +57,24 @@ pub enum Error {
         draw: u64,
         /// The value it had.
         value: f64,
+    },
+    /// The same of an estimator that is tried on several problems.
+    #[error("on the probe “{probe}” a draw is {value}: an estimate needs finite draws")]
+    OnProbe {
+        /// The problem.
+        probe: String,
+        /// Whether it is the first draw of all.
+        first: bool,
+        /// The value it had.
+        value: f64,
+    },
+    /// An estimator that is tried on several problems panics.
+    #[error("on the probe “{probe}” the estimator panics: {reason}")]
+    Panic {
+        /// The problem.
+        probe: String,
+        /// What it says, and where.
+        reason: String,
     },
     /// A draw left the range that was claimed for it.
     #[error("draw {draw} of block {block} is {value} (seed {seed}), outside the range [{}, {}] claimed for it", .range[0], .range[1])]
@@ -161,13 +181,4 @@ pub(crate) fn takes(std_error: f64, draws: f64) -> String {
     } else {
         format!("a std error of {std_error} takes more than 1e300 draws")
     }
-}
-
-/// A number to so many digits, trailing zeros left out: 1.2e9.
-pub(crate) fn rounded(value: f64, digits: usize) -> String {
-    if value == 0.0 {
-        return "0".into();
-    }
-    let rounded = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
-    format!("{rounded:e}")
 }

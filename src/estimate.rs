@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result, require};
 use crate::fast::widest;
 use crate::float::two_sum;
+use crate::numbers::plus_minus;
 use crate::quantile::student_t;
 
 /// Draws summed in one two-pass sweep: they stay in the first-level cache between the passes.
@@ -196,6 +197,12 @@ impl Estimate {
         Ok([self.mean() - reach, self.mean() + reach])
     }
 
+    /// Half the width of the 95 % interval.
+    pub(crate) fn reach(&self) -> Option<f64> {
+        let [low, high] = self.confidence_interval(0.95).ok()?;
+        Some(0.5 * high - 0.5 * low)
+    }
+
     /// How many standard errors the mean lies from `truth`, ±∞ for an infinite one; `None` for fewer than two draws, and where
     /// there is no distance: a truth that is NaN, or draws that were not finite.
     ///
@@ -340,29 +347,14 @@ impl FromIterator<f64> for Estimate {
     }
 }
 
-/// `mean ± std error`, both to the digits that the error leaves meaningful: `0.31276 ± 0.00012`.
-/// A precision given in the format string, `{:.3}`, is used instead.
+/// The mean and its 95 % interval, to the digits that this leaves meaningful: `0.31276 ± 0.00024 (95 %)`.
 impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Some(std_error) = self.std_error() else {
-            return write!(f, "{} (too few draws for an error)", self.mean());
-        };
-        let places = f.precision().unwrap_or_else(|| places(std_error));
-        let mean = self.mean();
-        if std_error == 0.0 {
-            write!(f, "{mean} ± 0")
-        } else if (1e-12..1e12).contains(&std_error) && mean.abs() < 1e15 {
-            write!(f, "{mean:.places$} ± {std_error:.places$}")
-        } else {
-            write!(f, "{mean:e} ± {std_error:.1e}")
+        match self.reach() {
+            Some(reach) => write!(f, "{} (95 %)", plus_minus(self.mean(), reach)),
+            None => write!(f, "{} (too few draws for an error)", self.mean()),
         }
     }
-}
-
-/// Decimal places that show two digits of `std_error`.
-fn places(std_error: f64) -> usize {
-    let leading = std_error.log10().floor();
-    if leading.is_finite() { (1.0 - leading).clamp(0.0, 17.0) as usize } else { 6 }
 }
 
 /// Their sum, and that of the squares about their mean.

@@ -68,6 +68,7 @@ pub mod inversion;
 pub mod lambertian;
 #[cfg(feature = "notebook")]
 pub mod notebook;
+mod numbers;
 pub mod paths;
 pub mod placement;
 mod quantile;

@@ -9,13 +9,14 @@ use std::io::{self, Write as _};
 use maud::{Markup, html};
 pub use rand::distr::Distribution;
 
-use crate::check::{self, Agreement, Attempt, Diagnosis, Exact, Finding, Judgement, Report, Topic, Verdict};
+use crate::check::{self, Agreement, Attempt, Diagnosis, Exact, Exercise, Finding, Report, Verdict};
 use crate::error::{Error, Result};
 use crate::estimate::Estimate;
 use crate::figure::Figure;
-use crate::run::Outcome;
-use crate::trade::{Comparison, duration, two_digits};
-use crate::workbook::Table;
+use crate::numbers::{duration, plus_minus, shortened, two_digits};
+use crate::run::{Budget, Outcome, Run};
+use crate::trade::Comparison;
+use crate::workbook::{Judgement, Table, told_once};
 
 /// How a value looks in a notebook.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -62,7 +63,7 @@ impl Shown {
 /// ```
 /// use unbiased::{Estimate, notebook::Show};
 ///
-/// assert_eq!(Estimate::from_draws(&[1.0, 2.0, 3.0, 4.0]).show().plain(), "2.50 ± 0.65 (4 draws)");
+/// assert_eq!(Estimate::from_draws(&[1.0, 2.0, 3.0, 4.0]).show().plain(), "2.5 ± 2.1 (95 %, 4 draws)");
 /// ```
 pub trait Show {
     /// How it looks.
@@ -93,16 +94,7 @@ impl Show for Figure {
 
 impl Show for Estimate {
     fn show(&self) -> Shown {
-        let draws = self.draws();
-        let interval = self.confidence_interval(0.95).ok().zip(self.std_error());
-        let inside = interval.map_or(String::new(), |([low, high], std_error)| {
-            let places = places(std_error);
-            format!(", 95 %: {low:.places$} to {high:.places$}")
-        });
-        Shown::html(
-            format!("{self} ({draws} draws)"),
-            html! { b { (self) } span style=(FAINT) { " (" (draws) " draws" (inside) ")" } },
-        )
+        interval(self, &format!("{} draws", self.draws()))
     }
 }
 
@@ -116,11 +108,20 @@ impl Show for Outcome {
             cost.random_numbers,
             cost.evaluations
         );
-        Shown::html(
-            format!("{estimate} ({work})"),
-            html! { b { (estimate) } span style=(FAINT) { " (" (work) ")" } },
-        )
+        interval(estimate, &work)
     }
+}
+
+/// An estimate, and what it was made of.
+fn interval(estimate: &Estimate, work: &str) -> Shown {
+    let (interval, level) = match estimate.reach() {
+        Some(reach) => (plus_minus(estimate.mean(), reach), "95 %, "),
+        None => (estimate.to_string(), ""),
+    };
+    Shown::html(
+        format!("{interval} ({level}{work})"),
+        html! { b { (interval) } span style=(FAINT) { " (" (level) (work) ")" } },
+    )
 }
 
 impl Show for Report {
@@ -138,7 +139,7 @@ impl Show for Judgement {
     fn show(&self) -> Shown {
         let good = match self {
             Self::Right => Some(true),
-            Self::TooFewDigits => None,
+            Self::TooFewDigits { .. } => None,
             Self::LooksLike(_) | Self::Unknown { .. } => Some(false),
         };
         Shown::verdict(good, &self.to_string())
@@ -236,11 +237,21 @@ pub fn against(truth: f64, estimates: &[(&str, Estimate)]) -> Table {
             Some(z) => minus(format!("{z:.0}")),
             None => String::new(),
         };
-        vec![(*name).into(), minus(estimate.to_string()), ratio, z, estimate.draws().to_string()]
+        vec![
+            (*name).into(),
+            minus(
+                estimate
+                    .reach()
+                    .map_or_else(|| estimate.to_string(), |reach| plus_minus(estimate.mean(), reach)),
+            ),
+            ratio,
+            z,
+            estimate.draws().to_string(),
+        ]
     });
     Table {
-        caption: minus(format!("The truth is {}", crate::workbook::shortened(truth))),
-        columns: vec!["", "mean ± std error", "over the truth", "std errors off", "draws"],
+        caption: minus(format!("The truth is {}", shortened(truth))),
+        columns: vec!["", "mean ± 95 %", "over the truth", "std errors off", "draws"],
         rows: rows.collect(),
     }
 }
@@ -249,7 +260,7 @@ pub fn against(truth: f64, estimates: &[(&str, Estimate)]) -> Table {
 #[derive(Debug, Clone)]
 pub enum Checked {
     /// It is not written yet: its first draw is NaN.
-    Missing(Topic),
+    Missing(&'static Exercise),
     /// What its ratios to the truth say.
     Found(Diagnosis),
 }
@@ -260,28 +271,37 @@ const DRAWS: u64 = 200_000;
 /// Std errors within which a ratio is certain to lie.
 const CERTAIN: f64 = 5.0;
 
-/// Tries an estimator on all probes of its topic, with 200,000 draws each, and says whether it is missing, consistent with a classic mistake, or unbiased within so much.
+/// Tries an estimator on all probes of its exercise, with 200,000 draws each, and says whether it is missing, consistent with a classic mistake, or unbiased within so much.
 ///
 /// # Errors
 /// If a draw other than the first is not finite.
 ///
 /// ```
 /// use unbiased::check::{Attempt, Finding};
+/// use unbiased::inversion::mistakes::Samples;
 /// use unbiased::notebook::{Checked, check_mine};
 ///
-/// let unwritten = Attempt::exponential(|_rate, _rng| f64::NAN);
+/// let unwritten = Attempt::new(|_: &Samples, _| f64::NAN);
 /// assert!(matches!(check_mine(&unwritten)?, Checked::Missing(_)));
 ///
-/// let multiplied = Attempt::exponential(|rate, rng| -rate * (1.0 - rng.uniform()).ln());
+/// let multiplied = Attempt::new(|p: &Samples, rng| -p.rate * (1.0 - rng.uniform()).ln());
 /// let Checked::Found(diagnosis) = check_mine(&multiplied)? else { panic!() };
 /// assert_eq!(diagnosis.finding(), Finding::Known);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
 pub fn check_mine(mine: &Attempt<'_>) -> Result<Checked> {
-    match check::measure(mine, DRAWS, 1) {
-        Ok(measurements) => Ok(Checked::Found(check::diagnose(&measurements)?)),
-        Err(Error::Draw { block: 0, draw: 0, value, .. }) if value.is_nan() => {
-            Ok(Checked::Missing(mine.topic()))
+    let on = |probe| {
+        let run = Run::new(check::seed_of(probe, 1));
+        told_once(probe, || mine.measure(probe, &run, Budget::Draws(DRAWS)))
+    };
+    let measured: Result<Vec<_>> = mine.exercise().probes().iter().map(on).collect();
+    match measured {
+        Ok(measured) => {
+            let measured: Vec<_> = measured.into_iter().map(|(measurement, _)| measurement).collect();
+            Ok(Checked::Found(check::diagnose(&measured)?.shown_by(mine)))
+        }
+        Err(Error::OnProbe { first: true, value, .. }) if value.is_nan() => {
+            Ok(Checked::Missing(mine.exercise()))
         }
         Err(error) => Err(error),
     }
@@ -294,8 +314,8 @@ impl Checked {
             Self::Found(diagnosis) if diagnosis.finding() == Finding::NothingWrong => {
                 let measurements = diagnosis.measurements().iter();
                 let off = measurements.map(|measurement| {
-                    let (ratio, error) = measurement.ratio();
-                    (ratio - measurement.probe.right_ratio()).abs() + CERTAIN * error
+                    let ratio = measurement.ratio();
+                    (ratio.mean - measurement.probe.right_ratio()).abs() + CERTAIN * ratio.error
                 });
                 Some(off.fold(0.0, f64::max))
             }
@@ -307,10 +327,11 @@ impl Checked {
 impl Show for Checked {
     fn show(&self) -> Shown {
         let diagnosis = match self {
-            Self::Missing(topic) => {
+            Self::Missing(exercise) => {
+                let what = exercise.name();
                 return Shown::verdict(
                     None,
-                    &format!("Missing: there is no estimator of “{topic}” yet; its draw is NaN."),
+                    &format!("Missing: there is no estimator of “{what}” yet; its draw is NaN."),
                 );
             }
             Self::Found(diagnosis) => diagnosis,
@@ -347,16 +368,13 @@ fn said(good: Option<bool>, sentence: &str) -> Markup {
     html! { div style=(format!("border-left: 4px solid {colour}; padding-left: 0.6em")) { b { (mark) } " " (sentence) } }
 }
 
-/// Decimal places that show two digits of an error.
-fn places(error: f64) -> usize {
-    let leading = error.log10().floor();
-    if leading.is_finite() { (1.0 - leading).clamp(0.0, 17.0) as usize } else { 6 }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::hemisphere::Hemisphere;
+    use crate::lambertian::mistakes::Reflection;
+    use crate::roulette::mistakes::Bounces;
+    use crate::stream::Stream;
 
     #[test]
     fn every_kind_has_plain_text_and_something_better() {
@@ -370,7 +388,7 @@ mod tests {
         let (kind, content) = shown.rich().unwrap();
         assert_eq!(kind, "text/html");
         assert!(content.contains("&lt;b&gt;") && !content.contains("<b>"), "{content}");
-        assert!(shown.plain().contains("0.5 ± 1.5"), "{}", shown.plain());
+        assert!(shown.plain().contains("0 ± 19"), "{}", shown.plain());
     }
 
     #[test]
@@ -388,25 +406,29 @@ mod tests {
     #[test]
     fn the_three_states_of_ones_own_estimator() {
         let state = |attempt: &Attempt<'_>| check_mine(attempt).unwrap().show().plain().to_owned();
-        assert!(state(&Attempt::bounces(|_, _| f64::NAN)).starts_with("Missing"));
-        let wrong = |light: &dyn Fn(&_) -> f64, albedo: f64, rng: &mut _| {
-            albedo * light(&Hemisphere::Uniform.sample(rng))
-        };
-        let said = state(&Attempt::hemisphere(wrong));
+        assert!(state(&Attempt::new(|_: &Bounces, _| f64::NAN)).starts_with("Missing"));
+        let wrong = |p: &Reflection, rng: &mut _| p.albedo * p.light(&Hemisphere::Uniform.sample(rng));
+        let said = state(&Attempt::new(wrong));
         assert!(
             said.starts_with("Not right.") && said.contains("uniform directions, the cosine weight"),
             "{said}"
         );
-        let right = |light: &dyn Fn(&_) -> f64, albedo: f64, rng: &mut _| {
-            albedo * light(&Hemisphere::Cosine.sample(rng))
-        };
-        let checked = check_mine(&Attempt::hemisphere(right)).unwrap();
-        // the largest spread of a ratio is below 3: five std errors are below 3.4 %
+        let right = |p: &Reflection, rng: &mut _| p.albedo * p.light(&Hemisphere::Cosine.sample(rng));
+        let checked = check_mine(&Attempt::new(right)).unwrap();
+        // the largest spread of a ratio is √15: five std errors are below 4.4 %
         let within = checked.within().unwrap();
-        assert!(within > 0.0 && within <= 0.04, "{within}");
+        assert!(within > 0.0 && within <= 0.06, "{within}");
         assert!(checked.show().plain().starts_with("Unbiased within"));
         // NaN later on is a fault of the estimator, not a missing one
-        let late = Attempt::bounces(|_, rng| if rng.random_numbers() > 5 { f64::NAN } else { rng.uniform() });
-        assert!(matches!(check_mine(&late), Err(Error::Draw { .. })));
+        let late =
+            |_: &Bounces, rng: &mut Stream| if rng.random_numbers() > 5 { f64::NAN } else { rng.uniform() };
+        let late = check_mine(&Attempt::new(late)).unwrap_err().to_string();
+        assert_eq!(late, "on the probe “p_rr = 0.8” a draw is NaN: an estimate needs finite draws");
+        let panics = |_: &Bounces, _: &mut Stream| panic!("no such thing");
+        let told = check_mine(&Attempt::new(panics)).unwrap_err().to_string();
+        assert!(
+            told.starts_with("on the probe “p_rr = 0.8” the estimator panics: no such thing (src"),
+            "{told}"
+        );
     }
 }

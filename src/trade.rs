@@ -16,10 +16,6 @@ mod shown;
 
 pub use comparison::{Comparison, Place};
 pub use measured::{Crossing, Measured, Nature, Reach};
-#[cfg(feature = "notebook")]
-pub(crate) use shown::duration;
-#[cfg(feature = "workbook")]
-pub(crate) use shown::two_digits;
 
 use crate::error::{Result, require};
 use crate::estimator::Estimator;

@@ -127,34 +127,35 @@ fn function(name: &str, body: &str) -> String {
 
 /// One's own estimators, to be written into the marked cells: right, and wrong, with what is said of the wrong one.
 const TURNS: [(char, &str, &str, &str); 5] = [
-    ('1', "-(1.0 - rng.uniform()).ln() / rate", "-(1.0 - rng.uniform()).ln() * rate", "multiplied by λ"),
+    ('1', "-(1.0 - rng.uniform()).ln() / p.rate", "-(1.0 - rng.uniform()).ln() * p.rate", "multiplied by λ"),
     (
         '2',
-        "let ([a, b], [c, d]) = (rectangle.x_range(), rectangle.y_range());
-         rectangle.area() * f(a + (b - a) * rng.uniform(), c + (d - c) * rng.uniform())",
-        "let ([a, b], [c, d]) = (rectangle.x_range(), rectangle.y_range());
+        "let [[a, b], [c, d]] = p.ends();
+         p.rectangle.area() * p.f(a + (b - a) * rng.uniform(), c + (d - c) * rng.uniform())",
+        "let [[a, b], [c, d]] = p.ends();
          let u = rng.uniform();
-         rectangle.area() * f(a + (b - a) * u, c + (d - c) * u)",
+         p.rectangle.area() * p.f(a + (b - a) * u, c + (d - c) * u)",
         "the same U for x and y",
     ),
     (
         '3',
         "let cos_theta = (1.0 - rng.uniform()).sqrt();
-         albedo * light(&Direction::polar(cos_theta, std::f64::consts::TAU * rng.uniform()).unwrap())",
+         p.albedo * p.light(&Direction::polar(cos_theta, std::f64::consts::TAU * rng.uniform()).unwrap())",
         "let cos_theta = 1.0 - rng.uniform();
-         albedo * light(&Direction::polar(cos_theta, std::f64::consts::TAU * rng.uniform()).unwrap())",
+         p.albedo * p.light(&Direction::polar(cos_theta, std::f64::consts::TAU * rng.uniform()).unwrap())",
         "uniform directions, the cosine weight",
     ),
     ('4', PATHS, "// one albedo for all\nPATHS", "p's albedo at every vertex"),
     (
         '5',
-        "if rng.uniform() < p_rr { x(rng) / p_rr } else { 0.0 }",
-        "if rng.uniform() < p_rr { x(rng) } else { 0.0 }",
+        "if rng.uniform() < p.p_rr { p.x(rng) / p.p_rr } else { 0.0 }",
+        "if rng.uniform() < p.p_rr { p.x(rng) } else { 0.0 }",
         "no compensation",
     ),
 ];
 
-const PATHS: &str = "let (mut vertex, mut throughput, mut light) = (room.point(), 1.0, 0.0);
+const PATHS: &str = "let (room, bounces) = (&p.room, p.bounces());
+    let (mut vertex, mut throughput, mut light) = (room.point(), 1.0, 0.0);
     for bounce in 0..=*bounces.end() {
         if bounces.contains(&bounce) {
             light += throughput * room.emitted(&vertex);

@@ -418,7 +418,7 @@ fn a_truth_of_0_makes_errors_absolute() {
     assert_eq!([columns[1], columns[6]], ["σ", "to 10⁻² (absolute)"]);
     assert_eq!([rows[0][1].as_str(), &rows[0][6]], ["2.0", "20000 s"]);
     let remark = rows[1].last().unwrap();
-    assert_eq!(remark, "bias 0.100 ± 0.010; overtaken by the best after 150 s, at 0.12");
+    assert_eq!(remark, "bias 0.100 ± 0.020 (95 %); overtaken by the best after 150 s, at 0.12");
 }
 
 /// CSV, by the rules of RFC 4180.

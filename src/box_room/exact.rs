@@ -61,20 +61,6 @@ pub(crate) fn seen(room: &BoxRoom, vertex: &Vertex) -> f64 {
     of(&room.light_corners()) - of(&shadow(room, vertex))
 }
 
-/// ∫ `f` dA over what a point sees of the light, `shadowed` or as if the cube hid nothing.
-pub(crate) fn over_the_light(
-    room: &BoxRoom,
-    vertex: &Vertex,
-    shadowed: bool,
-    f: impl Fn(DVec3) -> f64,
-) -> f64 {
-    let above = |corners: &[DVec3]| {
-        let rise = |y: DVec3| vertex.normal().dot(y - vertex.position());
-        over_polygon(&cut(corners, rise), &f)
-    };
-    above(&room.light_corners()) - if shadowed { above(&shadow(room, vertex)) } else { 0.0 }
-}
-
 /// ∫ `f` dω over the directions from p, on the cube's top, to the walls, whose points f is given, too.
 pub(crate) fn over_the_walls(room: &BoxRoom, f: impl Fn(&Vertex, DVec3) -> f64) -> f64 {
     let (p, w) = (room.point().position(), Face::ROOM_HALF_WIDTH);
@@ -126,11 +112,6 @@ fn cells(distance: f64, end: f64, other: f64) -> impl Iterator<Item = [f64; 2]> 
     })
 }
 
-/// ∫₀¹ `f`.
-pub(crate) fn over_the_unit(f: impl Fn(f64) -> f64) -> f64 {
-    GAUSS.iter().map(|[x, w]| w * f(*x)).sum()
-}
-
 /// What the cube hides of the light: empty from z = 1 upwards, and from the cube's own sides, where the horizon hides the same.
 fn shadow(room: &BoxRoom, vertex: &Vertex) -> Vec<DVec3> {
     let (o, c) = (vertex.position(), Face::CUBE_HALF_WIDTH);
@@ -172,22 +153,6 @@ fn cut(corners: &[DVec3], side: impl Fn(DVec3) -> f64) -> Vec<DVec3> {
         }
     }
     kept
-}
-
-/// ∫ `f` over a convex polygon, cut into triangles from its first corner.
-fn over_polygon(corners: &[DVec3], f: impl Fn(DVec3) -> f64) -> f64 {
-    let [first, rest @ ..] = corners else { return 0.0 };
-    let mut sum = 0.0;
-    for (b, c) in rest.iter().zip(rest.iter().skip(1)) {
-        let (b, c) = (*b - *first, *c - *first);
-        let area = b.cross(c).length();
-        for [s, ws] in GAUSS.iter() {
-            for [t, wt] in GAUSS.iter() {
-                sum += ws * wt * s * area * f(*first + (b + (c - b) * *t) * *s);
-            }
-        }
-    }
-    sum
 }
 
 const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];

@@ -4,48 +4,12 @@ use std::fmt;
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::mistakes::{Attempt, Mistake, Probe, Topic};
-use crate::error::{Error, Result, require_count};
-use crate::estimate::Estimate;
-use crate::run::{Budget, estimate};
-use crate::stream::mix;
-
-/// What an attempt's draws on one probe came to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Measurement {
-    /// The probe.
-    pub probe: Probe,
-    /// The mean found.
-    pub estimate: Estimate,
-}
-
-impl Measurement {
-    /// The mean found divided by [`Probe::unit`], with its std error.
-    pub fn ratio(&self) -> (f64, f64) {
-        let unit = self.probe.unit();
-        (self.estimate.mean() / unit, self.estimate.std_error().unwrap_or(f64::INFINITY) / unit.abs())
-    }
-
-    /// ((measured − predicted)/error)², the error not below rounding.
-    ///
-    /// Draws without a mean have no ratio to compare with, but show themselves all the same: the largest draw is then a good part of their sum, so that
-    /// the std error is, too. The misfit grows as the std error falls below 5 % of the mean.
-    fn misfit(&self, predicted: f64) -> f64 {
-        let (ratio, error) = self.ratio();
-        if predicted.is_nan() {
-            return f64::INFINITY;
-        }
-        if predicted.is_infinite() {
-            return (0.05 * ratio / error.max(ROUNDING * ratio.abs())).powi(2);
-        }
-        let floor = ROUNDING * predicted.abs().max(1.0);
-        let misfit = (ratio - predicted) / error.hypot(floor);
-        misfit * misfit
-    }
-}
-
-/// Estimators in f32 are right to about this, relative to the truth, however small their std error.
-const ROUNDING: f64 = 1e-6;
+use super::attempt::Attempt;
+use super::counterexample::{Counterexample, counterexample};
+use super::exercise::{Compound, Exercise, Mistake, Probe};
+use super::measure::{Measurement, Ratio};
+use crate::error::{Error, Result};
+use crate::numbers::plus_minus;
 
 /// The probability with which the right mistake may fall outside the region.
 const REGION: f64 = 1e-4;
@@ -56,49 +20,33 @@ const FALSE_ALARM: f64 = 1e-9;
 /// With a larger std error than this, relative to the truth, being consistent with it means nothing.
 const COARSE: f64 = 0.1;
 
-/// Tries an attempt on all probes of its topic, `draws` draws each.
-///
-/// # Errors
-/// If there are fewer than 2 draws, or a draw is not finite.
-pub fn measure(attempt: &Attempt<'_>, draws: u64, seed: u64) -> Result<Vec<Measurement>> {
-    measure_on(attempt, attempt.topic().probes(), draws, seed)
-}
+/// With fewer draws, all of them 0, chance hits may just not have come yet: any that come up in 0.3 % of
+/// draws have come by then but with probability 1e-12.
+const ZEROS: u64 = 10_000;
 
-/// The same on these probes alone.
-///
-/// # Errors
-/// Those of [`measure`], and if a probe belongs to another topic.
-pub fn measure_on(
-    attempt: &Attempt<'_>,
-    probes: &[Probe],
-    draws: u64,
-    seed: u64,
-) -> Result<Vec<Measurement>> {
-    require_count("the number of draws", draws, draws >= 2, "at least 2")?;
-    let on = |(index, probe): (usize, &Probe)| {
-        // the errors are added up as independent ones, so each probe has numbers of its own
-        let seed = mix(seed.wrapping_add(mix(index as u64 + 1)));
-        Ok(Measurement {
-            probe: *probe,
-            estimate: estimate(&attempt.at(probe)?, Budget::Draws(draws), seed)?,
-        })
-    };
-    probes.iter().enumerate().map(on).collect()
-}
+/// With fewer draws on a probe there is no verdict.
+const FEWEST: u64 = 30;
 
-/// Names the classic mistakes whose signature the measurements show.
+/// Names the classic mistakes that the measurements look like.
 ///
-/// Every mistake of the [gallery](Topic::mistakes) predicts a ratio to the truth on each probe. Those with Σ((measured − predicted)/error)² inside the joint
-/// confidence region of 1 − 1e-4 (χ², one degree of freedom a probe) are listed, the best first, and those that no probe can tell apart together, in
-/// the order in which their draws' spread fits. A right estimator is diagnosed with probability 1e-9 at most, as far as means are normal: use 1e5 draws a probe or so.
+/// Every mistake of the [gallery](Exercise::mistakes) has a ratio to the truth on each probe. Those with
+/// Σ((measured − ratio)/error)² inside the joint confidence region of 1 − 1e-4 (χ², one degree of freedom a
+/// probe; few or skew draws count for less) are listed, the best first, and those that no probe can tell
+/// apart together, in the order in which their draws' spread fits. Where no single one fits, a constant
+/// factor times one is looked for. A right estimator is diagnosed with probability 1e-9 or so.
+///
+/// There is no verdict from fewer than 30 draws a probe. Draws that never varied speak for a mistake whose
+/// draws do not, or for a right estimator if they are the truth, and otherwise neither for nor against
+/// anything.
 ///
 /// # Errors
-/// If there are no measurements, or they are of several topics, or of fewer than 2 draws.
+/// If there are no measurements, or they are of several exercises.
 ///
 /// ```
 /// use unbiased::check::{self, Attempt, Finding};
+/// use unbiased::inversion::mistakes::Samples;
 ///
-/// let mine = Attempt::exponential(|rate, rng| -rate * (1.0 - rng.uniform()).ln());
+/// let mine = Attempt::new(|p: &Samples, rng| -p.rate * (1.0 - rng.uniform()).ln());
 /// let diagnosis = check::diagnose(&check::measure(&mine, 100_000, 1)?)?;
 /// assert_eq!(diagnosis.finding(), Finding::Known);
 /// assert_eq!(diagnosis.candidates().next().unwrap().name(), "multiplied by λ");
@@ -106,59 +54,98 @@ pub fn measure_on(
 /// ```
 pub fn diagnose(measurements: &[Measurement]) -> Result<Diagnosis> {
     let [first, ..] = measurements else {
-        return Err(Error::TooFewDraws { statistic: "a diagnosis", needed: 2, draws: 0 });
+        return Err(Error::TooFewDraws { statistic: "a diagnosis", needed: FEWEST, draws: 0 });
     };
-    let topic = first.probe.topic();
-    for measurement in measurements {
-        if measurement.probe.topic() != topic {
-            let other = measurement.probe.topic();
-            return Err(Error::Usage(format!(
-                "probes of “{topic}” and of “{other}” cannot be diagnosed together"
-            )));
-        }
-        if measurement.estimate.draws() < 2 {
-            let draws = measurement.estimate.draws();
-            return Err(Error::TooFewDraws { statistic: "a diagnosis", needed: 2, draws });
-        }
+    let exercise = first.probe.exercise();
+    if let Some(other) = measurements.iter().find(|of| !std::ptr::eq(of.probe.exercise(), exercise)) {
+        let (name, other) = (exercise.name(), other.probe.exercise().name());
+        return Err(Error::Usage(format!(
+            "probes of “{name}” and of “{other}” cannot be diagnosed together"
+        )));
     }
-    let chi_square = |predicted: &dyn Fn(&Probe) -> f64| -> f64 {
-        measurements.iter().map(|measurement| measurement.misfit(predicted(&measurement.probe))).sum()
+    let mut diagnosis = Diagnosis {
+        exercise,
+        measurements: measurements.to_vec(),
+        finding: Finding::Unclear,
+        groups: Vec::new(),
+        compared: exercise.mistakes().len(),
+        counterexample: None,
     };
-    let probes = || measurements.iter().map(|measurement| &measurement.probe);
-    let tried = measurements.len();
+    if measurements.iter().any(|measurement| measurement.estimate.draws() < FEWEST) {
+        return Ok(diagnosis);
+    }
+    let varied: Vec<_> = measurements.iter().filter(|measurement| !measurement.never_varied()).collect();
+    let off: f64 = varied.iter().map(|of| of.misfit(Ratio::exact(of.probe.right_ratio()))).sum();
+    let wrong = !varied.is_empty() && !within(varied.len(), off, FALSE_ALARM);
+    let fixed = |of: &&Measurement| of.never_varied() && !of.is_the_truth();
+    let stuck = measurements.iter().any(|of| fixed(&of));
+    // draws of rare hits begin with zeros
+    let telling = |of: &Measurement| of.estimate.mean() != 0.0 || of.estimate.draws() >= ZEROS;
+    let constant = stuck && measurements.iter().filter(fixed).all(telling);
 
-    let right = chi_square(&Probe::right_ratio);
+    let singles = exercise.mistakes().iter().map(|mistake| {
+        let ratio = |probe: &Probe| exercise.ratio(mistake, probe);
+        Candidate { factor: None, mistake: Some(mistake), ratios: per_probe(measurements, ratio) }
+    });
+    diagnosis.groups = grouped(measurements, singles);
+    if diagnosis.groups.is_empty() && (wrong || constant) {
+        let of = |compound: &'static Compound| Candidate {
+            factor: Some(&compound.factor),
+            mistake: compound.base.and_then(|base| exercise.mistakes().get(base)),
+            ratios: per_probe(measurements, |probe| {
+                compound.ratios.get(probe.index()).copied().unwrap_or(Ratio::UNKNOWN)
+            }),
+        };
+        diagnosis.compared += exercise.compounds().len();
+        diagnosis.groups = grouped(measurements, exercise.compounds().iter().map(of));
+    }
+    diagnosis.finding = if !diagnosis.groups.is_empty() && (wrong || constant) {
+        for group in &mut diagnosis.groups {
+            group.sort_by_spread(exercise, measurements);
+        }
+        Finding::Known
+    } else if wrong {
+        Finding::Unknown
+    } else if !stuck && varied.iter().all(|of| of.ratio().error <= COARSE) {
+        Finding::NothingWrong
+    } else {
+        Finding::Unclear
+    };
+    Ok(diagnosis)
+}
+
+impl Diagnosis {
+    /// The same, with a [counterexample](Self::counterexample) from the attempt itself, if it is wrong and
+    /// there is one.
+    pub fn shown_by(mut self, attempt: &Attempt<'_>) -> Self {
+        if matches!(self.finding, Finding::Known | Finding::Unknown) {
+            self.counterexample = counterexample(self.exercise, attempt);
+        }
+        self
+    }
+}
+
+fn per_probe(measurements: &[Measurement], ratio: impl Fn(&Probe) -> Ratio) -> Vec<Ratio> {
+    measurements.iter().map(|measurement| ratio(measurement.probe)).collect()
+}
+
+/// Those of the candidates that fit, the best first, and with them those that look alike.
+fn grouped(measurements: &[Measurement], candidates: impl Iterator<Item = Candidate>) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
-    for mistake in topic.mistakes() {
-        let chi_square = chi_square(&|probe| mistake.ratio(probe));
-        if !within(tried, chi_square, REGION) {
+    for candidate in candidates {
+        let fits = measurements.iter().zip(&candidate.ratios);
+        let chi_square = fits.map(|(measurement, ratio)| measurement.misfit(*ratio)).sum();
+        if !within(measurements.len(), chi_square, REGION) {
             continue;
         }
-        match groups
-            .iter_mut()
-            .find(|group| group.mistakes.iter().all(|other| !other.told_apart(mistake, probes())))
-        {
-            Some(group) => group.mistakes.push(mistake),
-            None => groups.push(Group { mistakes: vec![mistake], chi_square }),
+        let alike = |group: &&mut Group| group.candidates.iter().all(|other| !other.differs(&candidate));
+        match groups.iter_mut().find(alike) {
+            Some(group) => group.candidates.push(candidate),
+            None => groups.push(Group { candidates: vec![candidate], chi_square }),
         }
     }
     groups.sort_by(|a, b| a.chi_square.total_cmp(&b.chi_square));
-    for group in &mut groups {
-        if group.mistakes.len() > 1 {
-            group
-                .mistakes
-                .sort_by(|a, b| strangeness(a, measurements).total_cmp(&strangeness(b, measurements)));
-        }
-    }
-    let precise = measurements.iter().all(|measurement| measurement.ratio().1 <= COARSE);
-    let finding = if within(tried, right, FALSE_ALARM) {
-        if precise { Finding::NothingWrong } else { Finding::Unclear }
-    } else if groups.is_empty() {
-        Finding::Unknown
-    } else {
-        Finding::Known
-    };
-    Ok(Diagnosis { topic, measurements: measurements.to_vec(), right, finding, groups })
+    groups
 }
 
 /// Whether χ² is below what all but a share `outside` of measurements stay below; NaN is not.
@@ -167,17 +154,16 @@ fn within(probes: usize, chi_square: f64, outside: f64) -> bool {
     ChiSquared::new(probes as f64).is_ok_and(|law| law.sf(chi_square) >= outside)
 }
 
-/// How far the measured std deviations are from those predicted: Σ ln².
-fn strangeness(mistake: &Mistake, measurements: &[Measurement]) -> f64 {
+/// How far the measured mean squares are from those of the mistake: Σ ln².
+fn strangeness(exercise: &Exercise, mistake: &Mistake, measurements: &[Measurement]) -> f64 {
     let of = |measurement: &Measurement| {
-        let unit = measurement.probe.unit().abs();
-        let measured = measurement.estimate.variance()?.sqrt() / unit;
-        let predicted = mistake.spread(&measurement.probe)? / unit;
-        let ratio = (measured + ROUNDING) / (predicted + ROUNDING);
-        Some(ratio.ln().powi(2))
+        let mean = measurement.ratio().mean;
+        let spread = measurement.estimate.variance()? / measurement.probe.scale().powi(2);
+        let ratio = (spread + mean * mean) / exercise.square(mistake, measurement.probe);
+        let off = ratio.ln().powi(2);
+        off.is_finite().then_some(off)
     };
-    // a spread that is not known is taken for a factor of 1.1 off: worse than one that fits, better than one that does not
-    measurements.iter().map(|measurement| of(measurement).unwrap_or(0.01)).sum()
+    measurements.iter().filter_map(of).sum()
 }
 
 /// What a diagnosis comes to.
@@ -185,37 +171,89 @@ fn strangeness(mistake: &Mistake, measurements: &[Measurement]) -> f64 {
 pub enum Finding {
     /// All ratios are consistent with a right estimator's.
     NothingWrong,
-    /// The same, but some std error is above a tenth of the truth: too few draws, or draws of infinite variance.
+    /// No verdict: too few draws, draws that never varied, or some std error above a tenth of the truth.
     Unclear,
-    /// Wrong, and consistent with at least one classic mistake.
+    /// Wrong, and consistent with at least one classic mistake, or a constant times one.
     Known,
     /// Wrong, and consistent with none of the classic mistakes.
     Unknown,
 }
 
-/// Mistakes that the probes tried cannot tell apart.
+/// What may be wrong: a mistake, a constant factor, or both.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    factor: Option<&'static str>,
+    mistake: Option<&'static Mistake>,
+    ratios: Vec<Ratio>,
+}
+
+impl Candidate {
+    /// The constant that the draws are too large by, beside the mistake: `2`, `1/π`, `λ`.
+    pub fn factor(&self) -> Option<&'static str> {
+        self.factor
+    }
+
+    /// The mistake; none if the constant is all that is wrong.
+    pub fn mistake(&self) -> Option<&'static Mistake> {
+        self.mistake
+    }
+
+    /// A name for programs, which stays: `log10`, `2*log10`, `2*right`.
+    pub fn id(&self) -> String {
+        let mistake = self.mistake.map_or("right", Mistake::id);
+        self.factor.map_or_else(|| mistake.into(), |factor| format!("{factor}*{mistake}"))
+    }
+
+    /// What it is called.
+    pub fn name(&self) -> String {
+        match (self.factor, self.mistake.map(Mistake::name)) {
+            (None, mistake) => mistake.unwrap_or("nothing").into(),
+            (Some(factor), None) => format!("a factor of {factor} too much"),
+            (Some(factor), Some(mistake)) => format!("a factor of {factor} too much, and {mistake}"),
+        }
+    }
+
+    fn differs(&self, other: &Self) -> bool {
+        self.ratios.iter().zip(&other.ratios).any(|(here, there)| here.differs(*there))
+    }
+}
+
+/// Candidates that the probes tried cannot tell apart.
 #[derive(Debug, Clone)]
 pub struct Group {
     /// They, the one whose spread fits best first.
-    pub mistakes: Vec<&'static Mistake>,
-    /// Σ((measured − predicted)/error)² over the probes.
+    pub candidates: Vec<Candidate>,
+    /// Σ((measured − its ratio)/error)² over the probes.
     pub chi_square: f64,
+}
+
+impl Group {
+    fn sort_by_spread(&mut self, exercise: &Exercise, measurements: &[Measurement]) {
+        if self.candidates.len() > 1 {
+            self.candidates.sort_by_cached_key(|candidate| {
+                let strangeness = candidate.mistake.map_or(0.0, |of| strangeness(exercise, of, measurements));
+                // at least 0, so the order of bits is that of numbers
+                strangeness.to_bits()
+            });
+        }
+    }
 }
 
 /// The classic mistakes that measurements are consistent with; see [`diagnose`].
 #[derive(Debug, Clone)]
 pub struct Diagnosis {
-    topic: Topic,
+    exercise: &'static Exercise,
     measurements: Vec<Measurement>,
-    right: f64,
     finding: Finding,
     groups: Vec<Group>,
+    compared: usize,
+    counterexample: Option<Counterexample>,
 }
 
 impl Diagnosis {
     /// What was diagnosed.
-    pub fn topic(&self) -> Topic {
-        self.topic
+    pub fn exercise(&self) -> &'static Exercise {
+        self.exercise
     }
 
     /// What the diagnosis comes to.
@@ -228,26 +266,70 @@ impl Diagnosis {
         &self.measurements
     }
 
-    /// Σ((measured − right)/error)² over the probes.
-    pub fn chi_square_of_right(&self) -> f64 {
-        self.right
-    }
-
-    /// Where something is wrong: the mistakes it is consistent with, the best first. None where nothing seems wrong.
+    /// Where something is wrong: what it is consistent with, the best first. None where nothing seems wrong.
     pub fn groups(&self) -> &[Group] {
         if self.finding == Finding::Known { &self.groups } else { &[] }
     }
 
     /// The same, one after the other.
-    pub fn candidates(&self) -> impl Iterator<Item = &'static Mistake> + '_ {
-        self.groups().iter().flat_map(|group| group.mistakes.iter().copied())
+    pub fn candidates(&self) -> impl Iterator<Item = &Candidate> {
+        self.groups().iter().flat_map(|group| &group.candidates)
     }
 
-    /// Where nothing seems wrong, or all is unclear: the mistakes that these probes and this many draws could not see.
+    /// Where nothing seems wrong, or all is unclear: the mistakes that these probes and this many draws could
+    /// not see.
     pub fn hidden(&self) -> impl Iterator<Item = &'static Mistake> + '_ {
         let unseen = matches!(self.finding, Finding::NothingWrong | Finding::Unclear);
         let groups = if unseen { &self.groups[..] } else { &[] };
-        groups.iter().flat_map(|group| group.mistakes.iter().copied())
+        groups.iter().flat_map(|group| &group.candidates).filter_map(|candidate| candidate.mistake)
+    }
+
+    /// How many mistakes, and constants times one, were compared.
+    pub fn compared(&self) -> usize {
+        self.compared
+    }
+
+    /// Random numbers at which the attempt is wrong: in numbers that can be worked out by hand. Only where
+    /// its draws are functions of one or two uniform numbers, and it is plain that it uses them as the
+    /// sheet's own estimator does.
+    pub fn counterexample(&self) -> Option<&Counterexample> {
+        self.counterexample.as_ref()
+    }
+
+    /// The probes on which the draws are right, where they are wrong elsewhere.
+    pub fn right_on(&self) -> impl Iterator<Item = &'static Probe> + '_ {
+        let right = |of: &&Measurement| {
+            if of.never_varied() {
+                return of.is_the_truth();
+            }
+            let known = of.ratio().error <= COARSE;
+            known && within(1, of.misfit(Ratio::exact(of.probe.right_ratio())), REGION)
+        };
+        self.measurements.iter().filter(right).map(|measurement| measurement.probe)
+    }
+
+    /// Why there is no verdict, and what it would take.
+    fn too_little(&self) -> String {
+        let fewest = self.measurements.iter().map(|of| of.estimate.draws()).min().unwrap_or(0);
+        if fewest < FEWEST {
+            return format!("Too few draws to judge: {fewest}. Take 1000 a probe or more.");
+        }
+        let stuck = self.measurements.iter().find(|of| of.never_varied() && !of.is_the_truth());
+        if let Some(stuck) = stuck {
+            let (value, probe, draws) = (stuck.estimate.mean(), stuck.probe, stuck.estimate.draws());
+            let more = 100 * draws;
+            return format!(
+                "No verdict: all {draws} draws for “{probe}” are {value}, which is not the truth, but draws of rare large values could begin so. Take {more}, or look at your program."
+            );
+        }
+        let needed = self.measurements.iter().map(|of| {
+            let short = of.ratio().error / COARSE;
+            of.estimate.draws() as f64 * (short * short).max(1.0)
+        });
+        let needed = needed.fold(0.0, f64::max);
+        format!(
+            "Too uncertain to say: a std error is above a tenth of the truth. It takes some {needed:.1e} draws a probe; if the error does not fall then, the variance is infinite."
+        )
     }
 }
 
@@ -258,36 +340,52 @@ impl fmt::Display for Diagnosis {
             Finding::NothingWrong => {
                 write!(f, "Nothing wrong seen: all ratios to the truth are consistent with 1.")?
             }
-            Finding::Unclear => write!(
-                f,
-                "Too uncertain to say: a std error is above a tenth of the truth. Take more draws; if it does not fall, the variance is infinite."
-            )?,
+            Finding::Unclear => write!(f, "{}", self.too_little())?,
             Finding::Known => write!(f, "Not right. The ratios to the truth are consistent with:")?,
-            Finding::Unknown => write!(f, "Not right, and none of the known mistakes.")?,
+            Finding::Unknown => write!(
+                f,
+                "Not right, and none of the {} mistakes compared, of which most are a constant times another.",
+                self.compared
+            )?,
         }
         for (index, group) in self.groups().iter().enumerate() {
-            for (member, mistake) in group.mistakes.iter().enumerate() {
+            for (member, candidate) in group.candidates.iter().enumerate() {
                 let number = if member == 0 { format!("{}.", index + 1) } else { "   or".into() };
-                let (name, formula, fix) = (mistake.name(), mistake.formula(), mistake.fix());
-                write!(f, "\n{number} {name} ({formula}). To mend it: {fix}.")?;
+                write!(f, "\n{number} {}", candidate.name())?;
+                if let Some(mistake) = candidate.mistake {
+                    write!(f, " ({}). To mend it: {}", mistake.formula(), mistake.mend())?;
+                }
+                write!(f, ".")?;
             }
-            if group.mistakes.len() > 1 {
+            if group.candidates.len() > 1 {
                 write!(
                     f,
                     "\n   (No probe tells these apart; they are in the order in which their spread fits.)"
                 )?;
             }
         }
+        if self.candidates().any(|candidate| candidate.factor.is_some()) {
+            write!(f, "\n   (No single mistake fits; {} were compared, these among them.)", self.compared)?;
+        }
+        if let Some(counterexample) = &self.counterexample {
+            write!(f, "\n{counterexample}")?;
+        }
+        if matches!(self.finding, Finding::Known | Finding::Unknown) {
+            let right: Vec<_> = self.right_on().map(ToString::to_string).collect();
+            if !right.is_empty() {
+                write!(f, "\nRight on: {}.", right.join("; "))?;
+            }
+        }
         let hidden: Vec<_> = self.hidden().map(Mistake::name).collect();
         if !hidden.is_empty() {
             write!(f, "\nNot to be seen with these probes and draws: {}.", hidden.join("; "))?;
         }
-        write!(f, "\nRatios:")?;
+        write!(f, "\nRatios to the truth (± 95 %):")?;
         for measurement in &self.measurements {
-            let (ratio, error) = measurement.ratio();
-            let right = measurement.probe.right_ratio();
-            let note = if right == 1.0 { "" } else { " (of ∫|f|; right is 0)" };
-            write!(f, "\n  {}: {ratio:.4} ± {error:.4}{note}", measurement.probe)?;
+            let (ratio, scale) = (measurement.ratio().mean, measurement.probe.scale());
+            let reach = measurement.estimate.reach().unwrap_or(f64::INFINITY) / scale;
+            let note = if measurement.probe.right_ratio() == 0.0 { " (of ∫|f|; right is 0)" } else { "" };
+            write!(f, "\n  {}: {}{note}", measurement.probe, plus_minus(ratio, reach))?;
         }
         Ok(())
     }

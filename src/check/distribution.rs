@@ -14,8 +14,8 @@ use crate::stream::Stream;
 /// What a comparison of draws with their claimed distribution found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Agreement {
-    /// Whether the draws could be from the distribution claimed. `false` is wrong with probability at most α; `true` proves nothing that
-    /// `unseen` names.
+    /// Whether the draws could be from the distribution claimed. `false` is wrong with probability at most α;
+    /// `true` proves nothing that `unseen` names.
     pub agrees: bool,
     /// The largest statistic found, as a share of the one allowed: above 1 it does not agree.
     pub strain: f64,
@@ -38,7 +38,8 @@ pub enum Place {
     CosTheta(f64),
     /// The empirical cdf of φ/2π at this value.
     Azimuth(f64),
-    /// The share of directions in this cell of cos θ and φ/2π, each cut into [`CELLS`] equally probable parts, counted from 0.
+    /// The share of directions in this cell of cos θ and φ/2π, each cut into [`CELLS`] equally probable
+    /// parts, counted from 0.
     Cell(usize, usize),
 }
 
@@ -47,15 +48,16 @@ pub const CELLS: usize = 8;
 
 /// Compares a sampler's draws (what the estimator draws) with the cdf claimed for them.
 ///
-/// The empirical cdf of n draws stays within √(ln(2/α)/2n) of the true one, everywhere at once, with probability at least 1 − α,
-/// whatever n and whatever the distribution, discrete ones included (Dvoretzky, Kiefer & Wolfowitz 1956; Massart 1990). The number of draws is taken so
-/// that a deviation of `deviation` in the cdf is seen with probability 1 − 1e-6: n = (√(ln(2/α)/2) + √(ln(1e6)/2))²/D², 41 / D² at α = 1e-12.
-/// Draws may be infinite: then the claimed cdf's value at −∞ is its mass there, and what it lacks of 1 at the largest
-/// numbers is that at +∞.
+/// The empirical cdf of n draws stays within √(ln(2/α)/2n) of the true one, everywhere at once, with
+/// probability at least 1 − α, whatever n and whatever the distribution, discrete ones included (Dvoretzky,
+/// Kiefer & Wolfowitz 1956; Massart 1990). The number of draws is taken so that a deviation of `deviation` in
+/// the cdf is seen with probability 1 − 1e-6: n = (√(ln(2/α)/2) + √(ln(1e6)/2))²/D², 41 / D² at α = 1e-12.
+/// Draws may be infinite: then the claimed cdf's value at −∞ is its mass there, and what it lacks of 1 at the
+/// largest numbers is that at +∞.
 ///
 /// # Errors
-/// If the deviation is not in (0, 1], α not in (0, 1), a draw is NaN, or the claimed cdf leaves \[0, 1\] by more
-/// than 2⁻⁴⁰.
+/// If the deviation is not in (0, 1], α not in (0, 1), a draw is NaN, or the claimed cdf leaves \[0, 1\] by
+/// more than 2⁻⁴⁰.
 ///
 /// ```
 /// use unbiased::{check, inversion::Exponential};
@@ -88,11 +90,12 @@ pub fn distributed_as(
     })
 }
 
-/// Compares drawn directions with the density claimed for them: cos θ and φ/2π by the band of [`distributed_as`], and both together over 8 × 8 equally
-/// probable cells.
+/// Compares drawn directions with the density claimed for them: cos θ and φ/2π by the band of
+/// [`distributed_as`], and both together over 8 × 8 equally probable cells.
 ///
-/// A cell of probability p in which a share p̂ of n directions fell is refused where n·kl(p̂‖p) > ln(2k/α), k the number of cells, kl the relative
-/// entropy of two coins: Chernoff's bound, exact for every n and p, where Pearson's χ² at such levels is not. Each of the three parts has α/3.
+/// A cell of probability p in which a share p̂ of n directions fell is refused where n·kl(p̂‖p) > ln(2k/α), k
+/// the number of cells, kl the relative entropy of two coins: Chernoff's bound, exact for every n and p,
+/// where Pearson's χ² at such levels is not. Each of the three parts has α/3.
 ///
 /// # Errors
 /// If the deviation is not in (0, 1], or α not in (0, 1).
@@ -163,9 +166,9 @@ fn band(draws: usize, alpha: f64) -> f64 {
     ((2.0 / alpha).ln() / (2.0 * draws as f64)).sqrt()
 }
 
-/// sup |Fₙ − F| and where it is. Equal draws are taken together, −0 and 0, too, and F just below a value stands for its
-/// left limit, so that laws with jumps are compared at both sides of each. Nothing is below −∞, and all is at most +∞:
-/// there F is not asked, and at −∞, where it is the mass of −∞, a NaN is none.
+/// sup |Fₙ − F| and where it is. Equal draws are taken together, −0 and 0, too, and F just below a value
+/// stands for its left limit, so that laws with jumps are compared at both sides of each. Nothing is below
+/// −∞, and all is at most +∞: there F is not asked, and at −∞, where it is the mass of −∞, a NaN is none.
 fn largest_deviation(samples: &mut [f64], cdf: impl Fn(f64) -> f64) -> Result<(f64, f64)> {
     samples.sort_unstable_by(f64::total_cmp);
     let n = samples.len() as f64;

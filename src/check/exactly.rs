@@ -43,9 +43,10 @@ pub struct Exact {
 ///   alone. What depends on several at once is seen by the quadrature's own points, less than a hundredth of
 ///   the side apart in two dimensions and a fortieth in three, and by 16 scrambled Sobol sets of 2¹⁴ points
 ///   (Owen 1997): their values must lie in the quadrature's range, a quarter of it to spare, and their means
-///   of X and of its square agree to ten std errors and a 16384th of that range. So a part of the cube that is
-///   narrower than those points in every direction may be **missed**: with a probability of about
-///   exp(−262144 a) if it fills the part a of the cube and X leaves that range there, and always if X does not.
+///   of X and of its square agree to ten std errors and a 16384th of that range. So a part of the cube that
+///   is narrower than those points in every direction may be **missed**: with a probability of about
+///   exp(−262144 a) if it fills the part a of the cube and X leaves that range there, and always if X does
+///   not.
 ///
 /// If a draw takes more than a microsecond, 2⁻¹⁴ ≈ 6e-5 stands in the place of 2⁻²⁰.
 ///
@@ -63,22 +64,13 @@ pub struct Exact {
 /// # Ok::<(), unbiased::Error>(())
 /// ```
 pub fn exactly(estimator: &(impl Estimator + ?Sized), random_numbers: usize) -> Result<Exact> {
-    let (mean, variance) = moments(estimator, random_numbers, LOOKS)?;
-    Ok(Exact { mean, variance: variance? })
-}
-
-/// Mean and variance, the mean also where the variance cannot be known, after so many looks along a line.
-pub(super) fn moments(
-    estimator: &(impl Estimator + ?Sized),
-    random_numbers: usize,
-    looks: f64,
-) -> Result<(f64, Result<f64>)> {
     let count = random_numbers as u64;
     require_count("the random numbers of a draw", count, (1..=3).contains(&count), "1, 2 or 3")?;
-    let mut sweep = Sweep::new(estimator, random_numbers, looks)?;
+    let mut sweep = Sweep::new(estimator, random_numbers)?;
     if random_numbers == 1 {
         let (sums, _) = sweep.integrate(Line::Axis(0), true)?;
-        return sweep.judged(&sums);
+        let (mean, variance) = sweep.judged(&sums)?;
+        return Ok(Exact { mean, variance: variance? });
     }
     sweep.look_along_the_diagonal()?;
     let looked_at = std::mem::replace(&mut sweep.range, NOTHING);
@@ -87,8 +79,8 @@ pub(super) fn moments(
     let scattered = sweep.scattered()?;
     let (mean, variance) = sweep.judged(&sums)?;
     let [first, second] = sweep.compare(&sums, integrated, scattered);
-    first?;
-    Ok((mean, variance.and_then(|variance| second.map(|()| variance))))
+    first.and(second)?;
+    Ok(Exact { mean, variance: variance? })
 }
 
 /// Points at which X is compared with its polynomials: nowhere are they further apart than 2⁻²⁰.
@@ -236,7 +228,7 @@ struct Sweep<'a, E: ?Sized> {
 }
 
 impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
-    fn new(estimator: &'a E, dimensions: usize, looks: f64) -> Result<Self> {
+    fn new(estimator: &'a E, dimensions: usize) -> Result<Self> {
         // multiples of the golden ratio: evenly spread, and none but 0 at a place where jumps like to be
         let pieces = [64, 16, 6].get(dimensions - 1).copied().unwrap_or(1);
         let mut cuts: Vec<u64> =
@@ -245,7 +237,7 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
         let mut sweep = Self {
             estimator,
             dimensions,
-            looks,
+            looks: LOOKS,
             rng: Stream::scripted(&[]),
             point: [0; 3],
             unit: 1.0,
@@ -268,7 +260,7 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
         }
         // however busy the machine is, one of so many draws is not held up
         if quickest > SLOW {
-            sweep.looks = looks.min(FEWER_LOOKS);
+            sweep.looks = FEWER_LOOKS;
         }
         draws.sort_unstable_by(f64::total_cmp);
         let largest = draws.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));

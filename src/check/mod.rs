@@ -1,20 +1,28 @@
-//! Is an estimator unbiased? Is a sampler distributed as claimed? And if not, which classic mistake does it look like?
+//! Is an estimator unbiased? Is a sampler distributed as claimed? And if not, which classic mistake does it
+//! look like?
 //!
-//! Verdicts here have proven error probabilities at every sample size: nothing rests on the central limit theorem, and
-//! what is only approximate says so in its name.
+//! Verdicts of [`unbiased`] and [`distributed_as`] have proven error probabilities at every sample size:
+//! nothing rests on the central limit theorem. A [diagnosis](diagnose()) compares means, as near to normal as
+//! their draws let them be; it says so.
+//!
+//! This module knows no topic: each topic states its [`Exercise`]s in its own `mistakes`.
 
+mod attempt;
+mod counterexample;
 mod diagnose;
 mod distribution;
 mod exactly;
-mod mistakes;
+mod exercise;
+mod measure;
 mod unbiased;
 mod wealth;
 
-pub use diagnose::{Diagnosis, Finding, Group, Measurement, diagnose, measure, measure_on};
+pub use attempt::{Attempt, measure, seed_of};
+pub use counterexample::Counterexample;
+pub use diagnose::{Candidate, Diagnosis, Finding, Group, diagnose};
 pub use distribution::{Agreement, CELLS, Place, directions, distributed_as};
 pub use exactly::{Exact, exactly};
-pub use mistakes::{
-    Attempt, HandAnswer, Judgement, Mistake, Probe, Sky, Slip, Statistic, Surface, Topic, answers,
-    judge_answer,
-};
+pub(crate) use exercise::{About, Words};
+pub use exercise::{Exercise, Given, Mistake, Probe, Problem};
+pub use measure::{Measurement, Ratio, Tally};
 pub use unbiased::{Look, Report, Unbiased, Verdict, unbiased};

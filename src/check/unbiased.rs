@@ -21,10 +21,11 @@ pub enum Verdict {
     Undecided,
 }
 
-/// Checks whether `estimator`, whose draws lie in `range`, has the mean `truth` to within one part in a thousand, of the range
-/// where the truth is 0.
+/// Checks whether `estimator`, whose draws lie in `range`, has the mean `truth` to within one part in a
+/// thousand, of the range where the truth is 0.
 ///
-/// The short form of [`Unbiased`], with its error probabilities: a right estimator is called biased with probability at most 1e-12.
+/// The short form of [`Unbiased`], with its error probabilities: a right estimator is called biased with
+/// probability at most 1e-12.
 ///
 /// # Errors
 /// Those of [`Unbiased::new`] and [`Unbiased::run`].
@@ -43,17 +44,20 @@ pub fn unbiased(estimator: &(impl Estimator + ?Sized), truth: f64, range: [f64; 
     Unbiased::new(truth, range)?.run(estimator)
 }
 
-/// A sequential test of an estimator's mean, valid at every sample size and without the central limit theorem, for draws in a known
-/// range.
+/// A sequential test of an estimator's mean, valid at every sample size and without the central limit
+/// theorem, for draws in a known range.
 ///
-/// It bets against the claim that the mean is μ, upwards and downwards (see the module's sources). If the claim holds, the
-/// probability that the mean of both wealths ever reaches 1/α is at most α: then the estimator is called *biased*. It is called *unbiased within
-/// δ* once a bettor against the mean μ(1 − δ) who bets upwards, and one against μ(1 + δ) who bets downwards, have each made 1/β.
-/// A right estimator takes about 40 σ²/(δμ)² draws; a factor of 2 is refuted in some hundred.
+/// It bets against the claim that the mean is μ, upwards and downwards (see the module's sources). If the
+/// claim holds, the probability that the mean of both wealths ever reaches 1/α is at most α: then the
+/// estimator is called *biased*. It is called *unbiased within δ* once a bettor against the mean μ(1 − δ) who
+/// bets upwards, and one against μ(1 + δ) who bets downwards, have each made 1/β. A right estimator takes
+/// about 40 σ²/(δμ)² draws; a factor of 2 is refuted in some hundred.
 ///
-/// For draws in [0, ∞) the range's upper end may be infinite: too large a mean is then still refuted, but none can be certified.
+/// For draws in [0, ∞) the range's upper end may be infinite: too large a mean is then still refuted, but
+/// none can be certified.
 ///
-/// Sources: Ville 1939; Waudby-Smith & Ramdas 2024; for tests of renderers Subr & Arvo 2007; Gandy & Scott 2020; Jung, Hanika & Dachsbacher 2020.
+/// Sources: Ville 1939; Waudby-Smith & Ramdas 2024; for tests of renderers Subr & Arvo 2007; Gandy & Scott
+/// 2020; Jung, Hanika & Dachsbacher 2020.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unbiased {
     truth: f64,
@@ -88,18 +92,21 @@ pub struct Report {
 pub struct Look {
     /// The draws so far.
     pub draws: u64,
-    /// ln of the mean wealth of the two who bet against the truth, upwards and downwards: *biased* once it reaches ln(1/α).
+    /// ln of the mean wealth of the two who bet against the truth, upwards and downwards: *biased* once it
+    /// reaches ln(1/α).
     pub against_truth: f64,
-    /// ln of the wealth of who bets upwards against the truth less the tolerance: too low a mean is excluded once it reaches ln(1/β).
+    /// ln of the wealth of who bets upwards against the truth less the tolerance: too low a mean is excluded
+    /// once it reaches ln(1/β).
     pub against_too_low: f64,
-    /// ln of the wealth of who bets downwards against the truth plus the tolerance; stays 0 where the range has no upper end.
+    /// ln of the wealth of who bets downwards against the truth plus the tolerance; stays 0 where the range
+    /// has no upper end.
     pub against_too_high: f64,
 }
 
 impl Unbiased {
-    /// Checks against the mean `truth`, for draws in `range`, with δ = 1e-3, α = 1e-12, β = 1e-6, seed 1 and at most 10⁹ draws.
-    /// Where the truth is 0, which no relative tolerance is a part of, a difference of 1e-3 of the range counts as none, or of
-    /// the distance to its lower end where the upper one is infinite.
+    /// Checks against the mean `truth`, for draws in `range`, with δ = 1e-3, α = 1e-12, β = 1e-6, seed 1 and
+    /// at most 10⁹ draws. Where the truth is 0, which no relative tolerance is a part of, a difference of
+    /// 1e-3 of the range counts as none, or of the distance to its lower end where the upper one is infinite.
     ///
     /// # Errors
     /// If the range is empty or NaN, its lower end infinite, or the truth not strictly inside it.
@@ -121,7 +128,8 @@ impl Unbiased {
     /// Takes a relative difference of at most δ for none.
     ///
     /// # Errors
-    /// If δ is not positive, the truth is 0 (see [`within_absolute`](Self::within_absolute)), or μ(1 ± δ) leaves the range.
+    /// If δ is not positive, the truth is 0 (see [`within_absolute`](Self::within_absolute)), or μ(1 ± δ)
+    /// leaves the range.
     pub fn within(self, delta: f64) -> Result<Self> {
         require("the tolerance δ", delta, delta > 0.0, "positive")?;
         require("the truth of a relative tolerance", self.truth, self.truth != 0.0, "other than 0")?;
@@ -183,12 +191,14 @@ impl Unbiased {
     /// Draws from `estimator` until there is a verdict. It is the same for any number of threads.
     ///
     /// # Errors
-    /// If a draw is not finite, or leaves the range: the proof would be void. (By up to 1e-12 of the range it is rounding.)
+    /// If a draw is not finite, or leaves the range: the proof would be void. (By up to 1e-12 of the range it
+    /// is rounding.)
     pub fn run(&self, estimator: &(impl Estimator + ?Sized)) -> Result<Report> {
         self.watch(estimator, |_| ())
     }
 
-    /// The same, with the bettors' wealth on the way: a look at least every 256 draws, the last one the verdict's.
+    /// The same, with the bettors' wealth on the way: a look at least every 256 draws, the last one the
+    /// verdict's.
     ///
     /// # Errors
     /// Those of [`run`](Self::run).
@@ -262,12 +272,13 @@ impl Unbiased {
         Report { verdict, truth, estimate, tolerance, alpha, seed }
     }
 
-    /// Bets upwards and downwards against the truth, upwards against what is just too low and downwards against what is just too high.
+    /// Bets upwards and downwards against the truth, upwards against what is just too low and downwards
+    /// against what is just too high.
     fn bettors(&self) -> [Bets; 4] {
         let (up, down) = (self.truth - self.low, self.high - self.truth);
         let range = self.high - self.low;
-        // the best bet on a difference of d is d·μ/σ², at least d over the other side's room, since σ² ≤ up·down; without an upper end,
-        // a σ of ten times the mean is provided for
+        // the best bet on a difference of d is d·μ/σ², at least d over the other side's room, since σ² ≤
+        // up·down; without an upper end, a σ of ten times the mean is provided for
         let timid = |room: f64| {
             let room = if room.is_finite() { room } else { 100.0 * up };
             (self.tolerance / room).clamp(1e-12, 1e-3)
@@ -321,14 +332,16 @@ impl Unbiased {
         Ok(leaves)
     }
 
-    /// The draws after which nothing more is expected: twice what a right estimator of this variance needs but for one run in a million.
+    /// The draws after which nothing more is expected: twice what a right estimator of this variance needs
+    /// but for one run in a million.
     fn patience(&self, estimate: &Estimate) -> u64 {
         let bound = -self.beta.ln() + 10f64.ln();
         let deviations = (2.0 * bound).sqrt() + 7.0;
         // of the std deviation, since a variance may be beyond f64
         let deviation = estimate.std_error().unwrap_or(0.0) * (estimate.draws() as f64).sqrt();
         let spread = (deviation / self.tolerance).powi(2);
-        // an estimator that hardly varies still gains only about d/room a draw, on the side with the larger room
+        // an estimator that hardly varies still gains only about d/room a draw, on the side with the larger
+        // room
         let (up, down) = (self.truth - self.low, self.high - self.truth);
         let room = if down.is_finite() { up.max(down) } else { up };
         let draws = 2.0 * spread * deviations * deviations + 4.0 * bound * room / self.tolerance;
@@ -396,8 +409,8 @@ impl fmt::Display for Report {
 mod tests {
     use super::*;
 
-    /// The exact probability that the check calls draws of two values, 0 and 1, with the mean claimed biased within `leaves` leaves: by
-    /// dynamic programming over the number of ones.
+    /// The exact probability that the check calls draws of two values, 0 and 1, with the mean claimed biased
+    /// within `leaves` leaves: by dynamic programming over the number of ones.
     fn false_alarm(mean: f64, alpha: f64, leaves: usize) -> f64 {
         let check = Unbiased::new(mean, [0.0, 1.0]).unwrap().within(0.01).unwrap();
         let [up, down, ..] = check.bettors();
@@ -442,7 +455,8 @@ mod tests {
         alarm
     }
 
-    /// Exact, not simulated: the rate is below α at every level, by a factor of 2 to 1000 over the first 15,000 draws.
+    /// Exact, not simulated: the rate is below α at every level, by a factor of 2 to 1000 over the first
+    /// 15,000 draws.
     #[test]
     fn false_alarms_of_two_point_draws_stay_below_alpha_at_every_level() {
         for mean in [0.5, 0.1, 0.83] {

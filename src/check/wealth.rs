@@ -1,9 +1,10 @@
 //! Betting against a mean: wealth that cannot grow if the mean is what is claimed.
 //!
-//! For draws Y ≥ 0 of mean m, 1 + f(Y/m − 1) is a fair bet of the fraction f of one's wealth: its mean is 1. The product over draws is
-//! a non-negative martingale, so the probability that it ever reaches 1/α is at most α (Ville 1939), whenever one looks
-//! and whatever the distribution. Bets of several sizes are made side by side and the wealth is their mean.
-//! (Waudby-Smith & Ramdas 2024, "Estimating means of bounded random variables by betting".)
+//! For draws Y ≥ 0 of mean m, 1 + f(Y/m − 1) is a fair bet of the fraction f of one's wealth: its mean is 1.
+//! The product over draws is a non-negative martingale, so the probability that it ever reaches 1/α is at
+//! most α (Ville 1939), whenever one looks and whatever the distribution. Bets of several sizes are made side
+//! by side and the wealth is their mean. (Waudby-Smith & Ramdas 2024, "Estimating means of bounded random
+//! variables by betting".)
 
 /// Sizes of bet made side by side.
 pub(super) const BETS: usize = 10;

@@ -6,7 +6,7 @@ use rand::distr::Distribution;
 
 use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width, power_of_ten};
 use super::{Edition, Figure};
-use crate::check::{Look, Mistake, Probe, Topic, Unbiased};
+use crate::check::{Exercise, Look, Mistake, Probe, Problem, Unbiased};
 use crate::error::Result;
 use crate::estimator::from_fn;
 use crate::hemisphere::Hemisphere;
@@ -117,14 +117,18 @@ fn thinned(looks: &[Look]) -> impl Iterator<Item = &Look> {
 const CELL: f64 = 4.7;
 const LINE: f64 = 3.5;
 
-/// What each classic mistake of a topic makes of each probe: the ratio of its mean to the truth, in numbers and colours.
+/// What each classic mistake of an exercise makes of each probe: the ratio of its mean to the truth, in numbers and colours.
 ///
 /// A 1 in full is a mistake that the probe cannot see. Where the truth is 0 the ratio is taken to ∫ |f|, and 0 is right.
 ///
 /// # Errors
 /// If it cannot be drawn.
-pub fn mistakes(topic: Topic) -> Result<Figure> {
-    let (probes, mistakes) = (topic.probes(), topic.mistakes());
+pub fn mistakes<P: Problem>() -> Result<Figure> {
+    of(P::exercise())
+}
+
+fn of(exercise: &Exercise) -> Result<Figure> {
+    let (probes, mistakes) = (exercise.probes(), exercise.mistakes());
     // what all the probes have in common need not stand over each
     let names: Vec<String> = probes.iter().map(ToString::to_string).collect();
     let tail = names.first().and_then(|name| name.rsplit_once(", ")).map(|(_, tail)| format!(", {tail}"));
@@ -146,8 +150,8 @@ pub fn mistakes(topic: Topic) -> Result<Figure> {
     );
     for (index, mistake) in mistakes.iter().enumerate() {
         let cells = (1u32..).zip(probes).map(|(column, probe)| {
-            let ratio = mistake.ratio(probe);
-            ([f64::from(column), ratio, shade(ratio, probe.right_ratio())], told(mistake, probe))
+            let ratio = exercise.ratio(mistake, probe).mean;
+            ([f64::from(column), ratio, shade(ratio, probe.right_ratio())], told(exercise, mistake, probe))
         });
         panel.cells(mistake.name(), bottom_up(index), cells);
     }
@@ -158,18 +162,18 @@ pub fn mistakes(topic: Topic) -> Result<Figure> {
         }
     }
     Plot {
-        name: match topic {
-            Topic::Exponential => "check_mistakes_exponential",
-            Topic::Rectangle => "check_mistakes_rectangle",
-            Topic::Hemisphere => "check_mistakes_hemisphere",
-            Topic::Roulette => "check_mistakes_roulette",
-            Topic::Bounces => "check_mistakes_bounces",
-            Topic::Furnace => "check_mistakes_furnace",
-            Topic::Paths => "check_mistakes_paths",
+        name: match exercise.id() {
+            "samples" => "check_mistakes_exponential",
+            "integral" => "check_mistakes_rectangle",
+            "reflection" => "check_mistakes_hemisphere",
+            "roulette" => "check_mistakes_roulette",
+            "bounces" => "check_mistakes_bounces",
+            _ => "check_mistakes_paths",
         },
         title: format!(
-            "{} classic mistakes ({topic}) and what each probe shows of them: a plain 1 is a mistake it cannot see",
-            mistakes.len()
+            "{} classic mistakes ({}) and what each probe shows of them: a plain 1 is a mistake it cannot see",
+            mistakes.len(),
+            exercise.name()
         ),
         description: format!(
             "A table. Each row is a mistake, each column a probe ({}), each cell the mean of the mistaken draws over the truth, on blue where \
@@ -194,18 +198,20 @@ fn shade(ratio: f64, right: f64) -> f64 {
 }
 
 /// The ratio to two or three digits; in full, 1 or 0, where the probe does not see the mistake.
-fn told(mistake: &Mistake, probe: &Probe) -> String {
-    let ratio = mistake.ratio(probe);
+fn told(exercise: &Exercise, mistake: &Mistake, probe: &Probe) -> String {
+    let found = exercise.ratio(mistake, probe);
+    let ratio = found.mean;
     let text = match ratio.abs() {
-        _ if !mistake.is_seen_by(probe) => format!("{}", probe.right_ratio()),
+        _ if !probe.sees(found) => format!("{}", probe.right_ratio()),
         size if size.is_nan() => "–".into(),
-        f64::INFINITY => "∞".into(),
         0.0 => "0".into(),
         // what would look right shows how far it is off
         _ if (ratio - 1.0).abs() < 5e-3 && probe.right_ratio() == 1.0 => format!("1{:+.0e}", ratio - 1.0),
-        size if size < 0.1 => format!("{size:.3}"),
-        size if size < 10.0 => format!("{size:.2}"),
-        size => format!("{size:.1}"),
+        size => {
+            let most = if size < 0.1 { 3 } else { usize::from(size < 10.0) + 1 };
+            let known = |places: &usize| 2.0 * found.error <= 0.5 * 0.1f64.powi(*places as i32);
+            format!("{size:.0$}", (0..=most).rev().find(known).unwrap_or(0))
+        }
     };
     let minus = if ratio < 0.0 { "−" } else { "" };
     format!("{minus}{}", text.trim_start_matches('-').replace('-', "−"))
@@ -285,10 +291,10 @@ mod tests {
 
     #[test]
     fn every_topic_has_its_matrix_the_same_bytes_each_time() {
-        for topic in Topic::ALL {
-            let figure = mistakes(topic).unwrap();
-            assert_eq!(figure, mistakes(topic).unwrap());
-            assert_eq!(figure.csv().lines().count(), 1 + topic.mistakes().len() * topic.probes().len());
+        for exercise in crate::workbook::exercises() {
+            let figure = of(exercise).unwrap();
+            assert_eq!(figure, of(exercise).unwrap());
+            assert_eq!(figure.csv().lines().count(), 1 + exercise.mistakes().len() * exercise.probes().len());
             assert!(!figure.svg().contains("NaN"));
         }
     }

@@ -3,7 +3,8 @@
 use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
 use super::{Edition, Figure};
 use crate::error::Result;
-use crate::trade::{Comparison, Measured, Nature, two_digits};
+use crate::numbers::two_digits;
+use crate::trade::{Comparison, Measured, Nature};
 
 /// An ink, which has a dash of its own, and a marker a rival: no two are alike in grey.
 const STYLES: [(Ink, Marker); 16] = [

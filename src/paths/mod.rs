@@ -34,7 +34,9 @@ use crate::fast::Real;
 use crate::hemisphere::{Direction, Hemisphere};
 use crate::stream::Stream;
 
+pub mod mistakes;
 mod side_by_side;
+mod way;
 
 /// How a path finds the light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

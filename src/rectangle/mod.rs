@@ -18,6 +18,7 @@
 
 mod genz;
 mod integrand;
+pub mod mistakes;
 mod replicate;
 
 pub use genz::{Family, Genz};

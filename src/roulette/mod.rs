@@ -16,6 +16,7 @@ use crate::stream::Stream;
 
 mod bounces;
 mod light;
+pub mod mistakes;
 
 pub use bounces::{BounceCount, BouncesByInversion, BouncesBySimulation};
 pub use light::{LightModel, RoulettePaths, TruncatedPaths};

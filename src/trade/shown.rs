@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 
 use super::comparison::{Comparison, Place};
 use super::measured::{Crossing, Measured, Nature, Reach};
+use crate::numbers::{duration, plus_minus, two_digits, unit};
 
 /// The errors to which a table gives the times.
 const ERRORS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
@@ -94,9 +95,10 @@ impl Comparison {
 
     fn of_the_bias(&self, rival: &Measured) -> Vec<String> {
         let (unit, factor) = if self.truth == 0.0 { ("", 1.0) } else { (" %", 100.0 / self.truth) };
-        let [bias, error] = [factor * rival.bias(), (factor * rival.bias_error()).abs()];
-        let places = places(error.max(1e-9));
-        let amount = format!("{bias:.places$} ± {error:.places$}{unit}").replace('-', "−");
+        let (bias, reach) =
+            (factor * rival.bias(), factor.abs() * rival.estimate.reach().unwrap_or(f64::INFINITY));
+        let amount = plus_minus(bias, reach).replace('-', "−");
+        let amount = format!("{amount}{unit} (95 %)");
         if !rival.bias_seen() {
             return vec![format!("no bias seen: {amount}")];
         }
@@ -350,40 +352,4 @@ fn time(rival: &Measured) -> String {
     let [time, spread] = [rival.seconds, 0.5 * (high - low)].map(|seconds| factor * seconds);
     let places = (2.0 - time.log10().floor()).clamp(0.0, 9.0) as usize;
     format!("{time:.places$} ± {spread:.places$} {unit}")
-}
-
-/// The unit that suits so many seconds, and how many of it are a second.
-fn unit(seconds: f64) -> (f64, &'static str) {
-    match seconds {
-        s if s < 1e-6 => (1e9, "ns"),
-        s if s < 1e-3 => (1e6, "µs"),
-        s if s < 1.0 => (1e3, "ms"),
-        _ => (1.0, "s"),
-    }
-}
-
-/// Seconds, in the unit that suits them.
-pub(crate) fn duration(seconds: f64) -> String {
-    let (factor, unit) = unit(seconds);
-    format!("{} {unit}", two_digits(factor * seconds))
-}
-
-/// Two significant digits, or all of a whole number below 10⁵; `∞`.
-pub(crate) fn two_digits(x: f64) -> String {
-    if x.is_infinite() {
-        return "∞".into();
-    }
-    // 9.99 is shown as 10, which has one digit more
-    let size: f64 = format!("{x:.1e}").parse().map_or(x, f64::abs);
-    if x != 0.0 && !(1e-4..1e5).contains(&size) {
-        return format!("{x:.1e}");
-    }
-    // 0 has no first digit
-    let places = if x == 0.0 { 0.0 } else { (1.0 - size.log10().floor()).clamp(0.0, 9.0) };
-    format!("{x:.*}", places as usize)
-}
-
-/// Decimal places that show two digits of an error.
-fn places(error: f64) -> usize {
-    (1.0 - error.log10().floor()).clamp(0.0, 9.0) as usize
 }

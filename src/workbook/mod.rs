@@ -19,16 +19,20 @@
 
 mod answer;
 mod appendix;
-mod check_mine;
+mod by_hand;
+mod check;
+mod grammar;
 mod options;
 mod page;
 mod print;
+mod progress;
 mod section1;
 mod section2;
 mod section3;
 mod section4;
 mod section5;
 mod shards;
+mod terminal;
 mod value;
 
 use std::process::ExitCode;
@@ -36,15 +40,16 @@ use std::time::Duration;
 
 pub use answer::{Answer, Kind};
 pub use appendix::{Appendix, Table};
-pub use check_mine::check_mine;
+pub use by_hand::{Judgement, Letter, Number, Slip, judge_answer, judge_answer_at};
+#[cfg(feature = "notebook")]
+pub(crate) use check::told_once;
+pub use check::{check_mine, exercise, exercises};
 pub use options::Options;
 pub use value::Value;
 
-#[cfg(feature = "notebook")]
-pub(crate) use print::shortened;
-
 use crate::error::{Error, Result};
 use crate::figure::{Edition, write_whole};
+use crate::numbers::parseable;
 use crate::run::Budget;
 use appendix::Beside;
 use options::{Asked, Request};
@@ -68,7 +73,9 @@ pub struct Question {
     pub latex: &'static [&'static str],
     /// Why it is so, in a paragraph.
     pub answer: &'static str,
-    /// What people answer instead.
+    /// The numbers that it asks for, with the wrong ones that people arrive at.
+    pub numbers: &'static [Number],
+    /// What else people answer.
     pub wrong: &'static [Wrong],
     /// Where the sheet as it was handed out needs correcting.
     pub on_the_original: Option<&'static str>,
@@ -80,7 +87,7 @@ pub struct Question {
     pub parameters: &'static [Parameter],
 }
 
-/// A classic wrong answer.
+/// A classic wrong answer that is no number.
 #[derive(Debug, Clone, Copy)]
 pub struct Wrong {
     /// What is answered.
@@ -196,7 +203,7 @@ fn within_reason(beside: &Beside, appendix: AppendixFn, options: &Options) -> Re
             let mut shorter = options.clone();
             shorter.budget = Some(Budget::Time(MOST_TIME_BESIDE));
             let mut appendix = appendix(&shorter)?;
-            let (most, asked) = (MOST_TIME_BESIDE.as_secs_f64(), value::parseable(time.as_secs_f64()));
+            let (most, asked) = (MOST_TIME_BESIDE.as_secs_f64(), parseable(time.as_secs_f64()));
             appendix.text += &format!(
                 " Here it is {most} s each at most; \"cargo run --release --example {} -- --seconds {asked}\" takes the time asked for.",
                 beside.example

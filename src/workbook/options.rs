@@ -1,24 +1,22 @@
 //! The command line that all examples share.
 
-use std::cell::OnceCell;
 use std::collections::BTreeSet;
-use std::io::IsTerminal;
 use std::mem;
 use std::path::PathBuf;
 use std::rc::Rc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
 use lexopt::{Arg, Parser};
 
 use super::appendix::Beside;
+use super::progress::watched;
 use super::shards::Shards;
-use super::value::parseable;
-use super::{Answer, Question, Value, print};
+use super::{Answer, Parameter, Question, Value, print};
 use crate::box_room::Scene;
 use crate::error::{Error, Result};
 use crate::estimator::Estimator;
 use crate::figure::Edition;
+use crate::numbers::parseable;
 use crate::run::{Budget, Outcome, Run};
 
 /// The options of an example.
@@ -123,14 +121,8 @@ impl Request {
                 }
                 "edition" => options.edition = edition(&text(&mut line, "--edition")?)?,
                 _ => {
-                    let mut known = questions.iter().flat_map(|question| question.parameters);
-                    let Some(parameter) = known.find(|parameter| parameter.name == name) else {
-                        return Err(Error::Usage(format!("there is no option --{name}; --help lists them")));
-                    };
-                    let given = text(&mut line, &format!("--{name}"))?;
-                    let value = parameter.default.read_alike(&given).ok_or_else(|| {
-                        Error::Usage(format!("--{name} takes {}, not \"{given}\"", parameter.default.kind()))
-                    })?;
+                    let parameter = parameter(questions.iter().copied(), &name)?;
+                    let value = parameter.read(&text(&mut line, &format!("--{name}"))?)?;
                     options.given.push((name, value));
                 }
             }
@@ -146,6 +138,25 @@ impl Request {
             return Err(Error::Usage("--shard goes with --draws: only their number can be cut".into()));
         }
         Ok(Self::Run(options))
+    }
+}
+
+/// What the option `name` of one of these questions sets.
+pub(super) fn parameter(
+    questions: impl IntoIterator<Item = &'static Question>,
+    name: &str,
+) -> Result<&'static Parameter> {
+    let mut known = questions.into_iter().flat_map(|question| question.parameters);
+    let unknown = || Error::Usage(format!("there is no option --{name}; --help lists them"));
+    known.find(|parameter| parameter.name == name).ok_or_else(unknown)
+}
+
+impl Parameter {
+    /// A value given for it.
+    fn read(&self, given: &str) -> Result<Value> {
+        let kind = self.default.kind();
+        let unread = || Error::Usage(format!("--{} takes {kind}, not \"{given}\"", self.name));
+        self.default.read_alike(given).ok_or_else(unread)
     }
 }
 
@@ -225,6 +236,16 @@ impl Options {
         Self { question: Some(question), ..self.clone() }
     }
 
+    /// Sets the question's own option `name` to a value as the command line takes it: "0.8", "4/5".
+    ///
+    /// # Errors
+    /// If the question has no such option, or it does not take that.
+    pub fn set(&mut self, question: &'static Question, name: &str, given: &str) -> Result<()> {
+        let value = parameter([question], name)?.read(given)?;
+        self.given.push((name.into(), value));
+        Ok(())
+    }
+
     /// The value of the question's own option `name`: as given, or its default.
     fn value(&self, name: &str) -> Option<Value> {
         let given = self.given.iter().rev().find(|(given, _)| given == name);
@@ -291,26 +312,16 @@ impl Options {
         if let Some(shards) = &self.shards {
             return shards.next();
         }
-        let start = Instant::now();
-        let bar = OnceCell::new();
-        let watched = std::io::stderr().is_terminal() && !self.json;
-        let progress = |done: u64, total: Option<u64>| {
-            if watched && start.elapsed() > Duration::from_secs(1) {
-                bar.get_or_init(|| progress_bar(total)).set_position(done);
+        watched(!self.json, |progress| {
+            let mut run = Run::new(self.seed).max_draws(u64::MAX).max_time(MOST_TIME).progress(progress);
+            if let Some(threads) = self.threads {
+                run = run.threads(threads);
             }
-        };
-        let mut run = Run::new(self.seed).max_draws(u64::MAX).max_time(MOST_TIME).progress(&progress);
-        if let Some(threads) = self.threads {
-            run = run.threads(threads);
-        }
-        if let Some([k, of]) = self.shard {
-            run = run.shard(k, of);
-        }
-        let outcome = run.estimate(estimator, self.budget.unwrap_or(Budget::Draws(draws)));
-        if let Some(bar) = bar.get() {
-            bar.finish_and_clear();
-        }
-        outcome
+            if let Some([k, of]) = self.shard {
+                run = run.shard(k, of);
+            }
+            run.estimate(estimator, self.budget.unwrap_or(Budget::Draws(draws)))
+        })
     }
 
     /// Does what needs the folder for figures and pages: the folder is made first, before anything is computed for it, and goes
@@ -387,9 +398,3 @@ impl Options {
 
 /// What a row may take where an error is asked for, the pilot's first draws apart.
 const MOST_TIME: Duration = Duration::from_secs(5);
-
-fn progress_bar(total: Option<u64>) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:40} {human_pos} of {human_len} draws, {eta} to go");
-    let bar = ProgressBar::new(total.unwrap_or(0));
-    style.map(|style| bar.clone().with_style(style)).unwrap_or(bar)
-}

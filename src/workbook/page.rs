@@ -6,6 +6,7 @@ use pulldown_latex::{Parser, RenderConfig, Storage, config::DisplayMode, push_ma
 use super::{Answer, Appendix, Options, Question, print, shown};
 use crate::error::{Error, Result};
 use crate::figure::Edition;
+use crate::numbers::shortened;
 
 /// The whole page: no script, nothing loaded from elsewhere.
 pub(super) fn page(
@@ -85,6 +86,8 @@ fn article(question: &'static Question, answers: &[Answer], options: &Options) -
     let formulas = question.latex.iter().map(|latex| mathml(latex)).collect::<Result<Vec<_>>>()?;
     let answers: Vec<&Answer> = answers.iter().filter(|answer| shown(answer, edition)).collect();
     let figures = answers.iter().flat_map(|answer| answer.figures(edition));
+    let wrong =
+        if edition == Edition::Solution { question.classic_wrong_answers(&options)? } else { Vec::new() };
     let (command, remark) = options.command(question, answers.iter().copied());
     Ok(html! {
         article id={ "q" (question.id) } {
@@ -109,10 +112,10 @@ fn article(question: &'static Question, answers: &[Answer], options: &Options) -
             @if edition == Edition::Student {
                 div.space {}
             } @else {
-                @if !question.wrong.is_empty() {
+                @if !wrong.is_empty() {
                     h4 { "Classic wrong answers" }
                     dl {
-                        @for wrong in question.wrong { dt { (prose(wrong.answer)) } dd { (prose(wrong.slip)) } }
+                        @for (answer, slip) in &wrong { dt { (prose(answer)) } dd { (prose(slip)) } }
                     }
                 }
                 @if let Some(note) = question.on_the_original {
@@ -157,10 +160,10 @@ fn numbers(answers: &[&Answer], options: &Options) -> Markup {
                             td { (answer.question()) }
                             td { (prose(answer.what()))
                                 @for (name, value) in answer.parameters().iter().filter(|(name, _)| varied.contains(name)) { ", " (name) " = " (value.shortened()) } }
-                            td.number { @if let Some(truth) = answer.exact() { (print::shortened(truth)) } }
+                            td.number { @if let Some(truth) = answer.exact() { (shortened(truth)) } }
                             td.number {
                                 @if answer.estimate().is_some() { (print::interval(answer)) }
-                                @else if let Some(value) = answer.found() { (print::shortened(value)) }
+                                @else if let Some(value) = answer.found() { (shortened(value)) }
                             }
                             td.number {
                                 @if answer.too_few_draws() { (print::TOO_FEW) }
@@ -175,6 +178,11 @@ fn numbers(answers: &[&Answer], options: &Options) -> Markup {
     }
 }
 
+/// Whether it is shifted with the mark before it: ², which is numeric, has a place of its own.
+fn shifts(c: char) -> bool {
+    c.is_alphabetic() || c.is_ascii_digit()
+}
+
 /// Plain text with its x_i as subscripts, and its x^n and x^(…) as superscripts.
 fn prose(text: &str) -> Markup {
     let mut html = String::new();
@@ -186,7 +194,7 @@ fn prose(text: &str) -> Markup {
         let tag = if mark.starts_with('_') { "sub" } else { "sup" };
         let (shifted, left) = match after.strip_prefix('(').and_then(|inside| inside.split_once(')')) {
             Some(parts) if tag == "sup" => parts,
-            _ => after.split_at(after.find(|c: char| !c.is_alphanumeric()).unwrap_or(after.len())),
+            _ => after.split_at(after.find(|c| !shifts(c)).unwrap_or(after.len())),
         };
         html += &format!("<{tag}>{}</{tag}>", escaped(shifted));
         rest = left;
@@ -258,6 +266,7 @@ mod tests {
             ("p_rr = 4/5, L_i < 1", "p<sub>rr</sub> = 4/5, L<sub>i</sub> &lt; 1"),
             ("λ e^(−λx) dx", "λ e<sup>−λx</sup> dx"),
             ("cos^a θ", "cos<sup>a</sup> θ"),
+            ("p_rr² (1 − p_rr)", "p<sub>rr</sub>² (1 − p<sub>rr</sub>)"),
             ("no marks", "no marks"),
             ("at the end_", "at the end<sub></sub>"),
         ] {

@@ -8,8 +8,9 @@ use serde::Serialize;
 use super::answer::parameters_of;
 use super::appendix::Beside;
 use super::{Answer, Appendix, Kind, Options, Question, shown};
-use crate::error::{Error, Result, rounded};
+use crate::error::{Error, Result};
 use crate::figure::Edition;
+use crate::numbers::{plus_minus, rounded, shortened};
 use crate::run::Part;
 
 /// Prints the answers to one question and saves their figures.
@@ -33,7 +34,11 @@ pub(super) fn answers(question: &Question, answers: &[Answer], options: &Options
     let printed = if options.json {
         rows.iter().try_for_each(|(answer, paths)| json(question, answer, paths, options))
     } else {
-        text(question, &rows, options)
+        let wrong = match options.edition {
+            Edition::Solution => question.classic_wrong_answers(options)?,
+            Edition::Student => Vec::new(),
+        };
+        text(question, &rows, &wrong, options)
     };
     printed.or_else(until_the_pipe_closes)
 }
@@ -151,7 +156,12 @@ fn json(question: &Question, answer: &Answer, figures: &[PathBuf], options: &Opt
     writeln!(io::stdout(), "{}", serde_json::to_string(&row)?)
 }
 
-fn text(question: &Question, rows: &[(&Answer, Vec<PathBuf>)], options: &Options) -> io::Result<()> {
+fn text(
+    question: &Question,
+    rows: &[(&Answer, Vec<PathBuf>)],
+    wrong: &[(String, &str)],
+    options: &Options,
+) -> io::Result<()> {
     let out = &mut io::stdout().lock();
     writeln!(out, "\n{}  {}\n", question.id, question.title)?;
     wrapped(out, question.statement)?;
@@ -171,6 +181,12 @@ fn text(question: &Question, rows: &[(&Answer, Vec<PathBuf>)], options: &Options
         for svg in svgs(paths) {
             writeln!(out, "    figure       {}", svg.display())?;
         }
+    }
+    if !wrong.is_empty() {
+        writeln!(out, "\n    classic wrong answers")?;
+    }
+    for (answer, slip) in wrong {
+        wrapped(out, &format!("· {answer}: {slip}"))?;
     }
     if options.edition == Edition::Solution {
         let (command, remark) = options.command(question, rows.iter().map(|(answer, _)| *answer));
@@ -242,28 +258,9 @@ pub(super) fn cut_short(answer: &Answer) -> Option<String> {
 /// `mean ± half-width` of the 95 % interval
 pub(super) fn interval(answer: &Answer) -> String {
     let Some(estimate) = answer.estimate() else { return String::new() };
-    match estimate.confidence_interval(0.95) {
-        Ok([low, high]) => {
-            let reach = 0.5 * (high - low);
-            let places =
-                if reach > 0.0 { (1.0 - reach.log10().floor()).clamp(0.0, 17.0) as usize } else { 6 };
-            if (1e-12..1e12).contains(&reach) && estimate.mean().abs() < 1e15 || reach == 0.0 {
-                format!("{:.places$} ± {reach:.places$}", estimate.mean())
-            } else {
-                format!("{:e} ± {reach:.1e}", estimate.mean())
-            }
-        }
-        Err(_) => estimate.to_string(),
-    }
-}
-
-/// Twelve significant digits at most, trailing zeros left out.
-pub(crate) fn shortened(value: f64) -> String {
-    let rounded = format!("{value:.11e}").parse().unwrap_or(value);
-    if rounded == 0.0 || (1e-6..1e12).contains(&f64::abs(rounded)) {
-        format!("{rounded}")
-    } else {
-        format!("{rounded:e}")
+    match estimate.reach() {
+        Some(reach) => plus_minus(estimate.mean(), reach),
+        None => estimate.to_string(),
     }
 }
 

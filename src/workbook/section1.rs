@@ -1,8 +1,31 @@
 //! The questions of section 1, the inversion method.
 
-use super::{Parameter, Question, Value, Wrong};
+use super::by_hand::{classic, slip};
+use super::{Letter, Number, Parameter, Question, Slip, Value, Wrong};
+use crate::inversion::Exponential;
 
 const RATE: Parameter = Parameter { name: "rate", default: Value::Number(1.0), help: "the rate λ > 0" };
+
+const LAMBDA: Letter = Letter {
+    names: &["λ", "lambda"],
+    value: |options| Exponential::new(options.number("rate")).map(|exponential| exponential.rate()),
+    generic: 0.37,
+};
+const U: Letter = Letter {
+    names: &["u", "U"],
+    value: |options| {
+        let u = options.number("u");
+        Exponential::new(options.number("rate"))?.inverse_cdf(u).map(|_| u)
+    },
+    generic: 0.7313,
+};
+const LOG10: Slip = classic("log10", "−log₁₀(1 − u)/λ", "the logarithm to base 10");
+const LOG2: Slip = slip("log2", "−log₂(1 − u)/λ", "the logarithm to base 2");
+const SIGN: Slip = slip("sign", "ln(1 − u)/λ", "the sign forgotten");
+const TIMES_RATE: Slip = slip("times-rate", "−λ ln(1 − u)", "multiplied by λ instead of divided");
+const CDF_READ: Slip = classic("cdf-read", "1 − e^(−λu)", "F read at x = u instead of inverted");
+const PDF_READ: Slip = classic("pdf-read", "λ e^(−λu)", "p read at x = u instead of F inverted");
+const U_ITSELF: Slip = slip("u", "u", "U itself");
 
 pub(super) const QUESTIONS: &[Question] = &[
     Question {
@@ -19,19 +42,29 @@ pub(super) const QUESTIONS: &[Question] = &[
         ],
         answer: "Set F(x) = u and solve for x. A uniform number lands between F(x) and F(x + dx) with probability p(x) dx, which is what \
                  sampling p means. Where F has no inverse in closed form, or has jumps and flats, F⁻(u) = inf{x : F(x) ≥ u} \
-                 takes its place and is found by bisection.",
-        wrong: &[
-            Wrong {
-                answer: "−λ ln(1 − U)",
-                slip: "multiplied by λ: invisible at λ = 1, a mean of λ instead of 1/λ elsewhere",
-            },
-            Wrong { answer: "ln(1 − U)/λ", slip: "the sign forgotten: all samples are negative" },
-            Wrong {
-                answer: "−log₁₀(1 − U)/λ",
-                slip: "the wrong logarithm: every sample is 0.434 times what it should be",
-            },
-            Wrong { answer: "λ e^(−λU)", slip: "U put into the density instead of the inverse cdf" },
-        ],
+                 takes its place and is found by bisection. Whether λ divides or multiplies \
+                 shows only where λ is not 1.",
+        numbers: &[Number {
+            part: "",
+            symbol: "x(0.75)",
+            what: "a sample for the uniform number u, 0.75 where it is to be in digits",
+            formula: "−ln(1 − u)/λ or −ln u/λ",
+            over_n: None,
+            letters: &[LAMBDA, Letter { value: |_| Ok(0.75), ..U }],
+            slips: &[
+                Slip { classic: true, ..TIMES_RATE },
+                Slip { classic: true, ..SIGN },
+                LOG10,
+                PDF_READ,
+                CDF_READ,
+                LOG2,
+                U_ITSELF,
+                slip("times-rate-of-u", "−λ ln u", "multiplied by λ instead of divided"),
+                slip("sign-of-u", "ln u/λ", "the sign forgotten"),
+                slip("log10-of-u", "−log₁₀(u)/λ", "the logarithm to base 10"),
+            ],
+        }],
+        wrong: &[],
         on_the_original: Some(
             "The original takes U from [0, 1], where U = 1 would give an infinite sample: U lies in [0, 1). It also writes F⁻¹(x); the \
              argument of an inverse cdf is a probability, u.",
@@ -49,15 +82,34 @@ pub(super) const QUESTIONS: &[Question] = &[
         latex: &[r"x = -\ln(1 - 0.75) = \ln 4 \approx 1.386294", r"p(x) = e^{-\ln 4} = 0.25"],
         answer: "Start at 0.75 on the vertical axis of the CDF, go across to the curve and down to x. The same point lies on the inverse \
                  CDF, above u = 0.75.",
-        wrong: &[
-            Wrong {
-                answer: "0.288",
-                slip: "−ln U instead of −ln(1 − U): a sample too, but not the point on this CDF",
-            },
-            Wrong { answer: "0.602", slip: "logarithm to base 10" },
-            Wrong { answer: "0.528", slip: "F read at x = 0.75 instead of inverted" },
-            Wrong { answer: "0.472", slip: "p read at x = 0.75" },
-        ],
+        numbers: &[Number {
+            part: "",
+            symbol: "x",
+            what: "the sample for the uniform number u",
+            formula: "−ln(1 − u)/λ",
+            over_n: None,
+            letters: &[LAMBDA, U],
+            slips: &[
+                classic(
+                    "ln-u",
+                    "−ln u/λ",
+                    "−ln U instead of −ln(1 − U): a sample too, but not the point on this CDF",
+                ),
+                LOG10,
+                CDF_READ,
+                PDF_READ,
+                U_ITSELF,
+                SIGN,
+                TIMES_RATE,
+                LOG2,
+                slip("log10-of-u", "−log₁₀(u)/λ", "the logarithm to base 10, and of U instead of 1 − U"),
+                slip("sign-of-u", "ln u/λ", "ln U: 1 − U is needed, and the sign"),
+                slip("pdf", "λ(1 − u)", "the density at the sample, not the sample"),
+                slip("one-plus-u", "ln(1 + u)/λ", "ln(1 + U) instead of −ln(1 − U)"),
+                slip("no-log", "1/(λ(1 − u))", "1/(1 − U): the logarithm forgotten"),
+            ],
+        }],
+        wrong: &[],
         on_the_original: Some(
             "F and p take x, F⁻¹ takes u: the inverse is drawn against an axis of its own here.",
         ),
@@ -76,6 +128,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         formula: "x: a value that can be sampled; F(x): the probability of a sample at most x",
         latex: &[r"F(x) = P(X \le x)"],
         answer: "The values that can be sampled, here all x ≥ 0. The height of the curve is the probability that a sample is at most x.",
+        numbers: &[],
         wrong: &[
             Wrong {
                 answer: "a probability",

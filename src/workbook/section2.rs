@@ -1,10 +1,23 @@
 //! The questions of section 2, unbiased estimators.
 
-use super::{Parameter, Question, Value, Wrong};
+use super::by_hand::{classic, slip};
+use super::{Letter, Number, Options, Parameter, Question, Value, Wrong};
+use crate::error::Result;
+use crate::rectangle::Rectangle;
 
 const fn end(name: &'static str, default: f64, help: &'static str) -> Parameter {
     Parameter { name, default: Value::Number(default), help }
 }
+
+fn sides(options: &Options) -> Result<[f64; 2]> {
+    let [x, y] = [["x-low", "x-high"], ["y-low", "y-high"]].map(|ends| ends.map(|end| options.number(end)));
+    Rectangle::new(x, y).map(|_| [x, y].map(|[low, high]| high - low))
+}
+
+const W: Letter =
+    Letter { names: &["w"], value: |options| sides(options).map(|[width, _]| width), generic: 1.7 };
+const H: Letter =
+    Letter { names: &["h"], value: |options| sides(options).map(|[_, height]| height), generic: 4.1 };
 
 pub(super) const QUESTIONS: &[Question] = &[Question {
     id: "2.1",
@@ -27,22 +40,36 @@ pub(super) const QUESTIONS: &[Question] = &[Question {
              The 2n numbers also make n² pairs that are not independent: unbiased as well, for n times the \
              evaluations, with a variance that is no less at all where f is a sum of a function of x and one of \
              y. Spreading the points evenly does better: one in each cell of a grid, or a scrambled Sobol set.",
+    numbers: &[Number {
+        part: "",
+        symbol: "c",
+        what: "the factor c",
+        formula: "w h",
+        over_n: Some("c/n Σ f(Xᵢ, Yᵢ)"),
+        letters: &[W, H],
+        slips: &[
+            classic(
+                "one-density",
+                "w or h",
+                "divided by p(x) or p(y) alone, 1 over a side: p(x, y) = p(x) p(y)",
+            ),
+            classic("two-n", "w h/2", "divided by the number of values, 2n, instead of the number of pairs"),
+            classic("no-density", "1", "no division by p: the mean of f, not its integral"),
+            slip("times-density", "1/(w h)", "multiplied by p instead of divided"),
+            slip("times-one-density", "1/w or 1/h", "multiplied by p(x), instead of divided by p(x) p(y)"),
+            slip("sum", "w + h", "the sum of the two sides instead of their product"),
+            slip("perimeter", "2(w + h)", "the perimeter instead of the area"),
+            slip("square", "w² or h²", "one side squared: the other is not as long"),
+            slip("one-density-two-n", "w/2 or h/2", "divided by p(x) alone, and by 2n"),
+            slip("density-twice", "(w h)²", "divided by p twice"),
+            slip("n-for-two-n", "2w h", "n counted as the 2n values"),
+        ],
+    }],
     wrong: &[
         Wrong {
-            answer: "16/(2n) Σ f, half of F",
-            slip: "divided by the number of values, 2n, instead of the number of pairs",
-        },
-        Wrong {
-            answer: "4/n Σ f, a quarter of F",
-            slip: "the density of one coordinate, 1/4, taken for that of the pair",
-        },
-        Wrong {
-            answer: "1/n Σ f, a sixteenth of F",
-            slip: "the mean of f, not its integral: the division by p is missing",
-        },
-        Wrong {
-            answer: "16/n Σ f(Xᵢ, Xᵢ)",
-            slip: "X used again for Y: the points lie on the diagonal. f = xy gives 64/3 instead of 0, while f = 1 and f = x² + y² look right",
+            answer: "c/n Σ f(Xᵢ, Xᵢ)",
+            slip: "X used again for Y: the points lie on the diagonal. On [−2, 2]² f = xy then gives \
+                   64/3 instead of 0, while f = 1 and f = x² + y² look right",
         },
         Wrong {
             answer: "it is only right for large n",

@@ -1,6 +1,9 @@
 //! The questions of section 3, the diffuse cube.
 
-use super::{Parameter, Question, Value, Wrong};
+use super::by_hand::{classic, slip};
+use super::{Letter, Number, Parameter, Question, Value, Wrong};
+use crate::error::require;
+use crate::lambertian::Lambertian;
 
 const ALBEDO: Parameter =
     Parameter { name: "albedo", default: Value::Number(0.8), help: "the albedo ρ in [0, 1]" };
@@ -12,6 +15,20 @@ const A: Parameter =
     Parameter {
         name: "a", default: Value::Number(1.0), help: "the exponent of the light cos^a θ, above -2"
     };
+
+const RHO: Letter = Letter {
+    names: &["ρ", "rho"],
+    value: |options| Lambertian::new(options.number("albedo")).map(Lambertian::albedo),
+    generic: 0.61,
+};
+const L_I: Letter = Letter {
+    names: &["L_i", "Li", "L"],
+    value: |options| {
+        let radiance = options.number("radiance");
+        require("the radiance", radiance, radiance.is_finite(), "finite")
+    },
+    generic: 1.7,
+};
 
 pub(super) const QUESTIONS: &[Question] = &[
     Question {
@@ -26,7 +43,19 @@ pub(super) const QUESTIONS: &[Question] = &[
             r"L_e = 0",
         ],
         answer: "Wood is no lamp: all light that leaves the cube came from elsewhere, so its outgoing radiance is the reflected one.",
-        wrong: &[Wrong { answer: "ρ", slip: "albedo says how much is reflected, not how much is emitted" }],
+        numbers: &[Number {
+            part: "",
+            symbol: "L_e",
+            what: "the emitted radiance",
+            formula: "0",
+            over_n: None,
+            letters: &[RHO, Letter { value: |_| Ok(1.0), ..L_I }],
+            slips: &[
+                classic("reflected", "ρ or ρ L_i", "ρ says what is reflected, not what is emitted"),
+                slip("one", "1 or L_i", "wood does not glow: what it reflects is not emitted"),
+            ],
+        }],
+        wrong: &[],
         on_the_original: Some(
             "The original calls the sum with L_e in it reflected radiance. Outgoing radiance is the sum, L_o = L_e + L_r; reflected radiance is the integral.",
         ),
@@ -46,14 +75,37 @@ pub(super) const QUESTIONS: &[Question] = &[
         ],
         answer: "A solid angle is dω = sin θ dθ dφ, so the integrand is cos θ sin θ, whose integral over θ is ½. The π of the BRDF is there to cancel the π \
                  that is left: a white surface (ρ = 1) under a uniform sky is as bright as the sky.",
-        wrong: &[
-            Wrong {
-                answer: "2ρ L_i",
-                slip: "sin θ of the solid angle forgotten, or cos θ of the tilt: both areas are 1 instead of ½",
-            },
-            Wrong { answer: "π ρ L_i", slip: "the 1/π of the BRDF forgotten" },
-            Wrong { answer: "ρ L_i/2", slip: "the integral over φ taken to π instead of 2π" },
-        ],
+        numbers: &[Number {
+            part: "",
+            symbol: "L_r",
+            what: "the reflected radiance L_r",
+            formula: "ρ L_i",
+            over_n: None,
+            letters: &[RHO, L_I],
+            slips: &[
+                classic("no-sine", "2ρ L_i", "sin θ or cos θ forgotten in the integral"),
+                classic("no-pi", "π ρ L_i", "the 1/π of the BRDF forgotten"),
+                classic(
+                    "half-turn",
+                    "ρ L_i/2",
+                    "φ over half a turn only, or ∫ sin θ cos θ dθ = ½ without its 2",
+                ),
+                slip(
+                    "brdf",
+                    "ρ L_i/π or ρ/π",
+                    "the BRDF alone: the integral of cos θ over the hemisphere is π, not 1",
+                ),
+                slip("no-pi-no-sine", "2π ρ L_i", "the 1/π of the BRDF forgotten, and cos θ or sin θ"),
+                slip("cosine-twice", "2ρ L_i/3", "cos θ twice"),
+                slip("cosine-for-sine", "π ρ L_i/2", "∫ cos² θ dθ: cos θ put for sin θ in the measure"),
+                slip("no-albedo", "L_i", "ρ forgotten"),
+                slip("no-brdf", "π L_i", "ρ/π forgotten"),
+                slip("no-sine-no-cosine", "π² ρ L_i", "neither sin θ nor cos θ, nor the BRDF's 1/π"),
+                slip("no-radiance", "ρ", "L_i forgotten: that is L_r/L_i"),
+                slip("emitted", "0", "that is L_e, the emitted radiance"),
+            ],
+        }],
+        wrong: &[],
         on_the_original: None,
         example: "q3_2_uniform_sky",
         module: "lambertian",
@@ -68,6 +120,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         latex: &[r"\frac{\partial L_r}{\partial \omega_o} = 0, \qquad L_r \propto \rho"],
         answer: "The BRDF ρ/π knows no ω_o: that is what makes the surface Lambertian, equally bright from every side. ρ, the albedo, is the share of the \
                  incoming power that is reflected; above 1 the surface would create energy.",
+        numbers: &[],
         wrong: &[
             Wrong {
                 answer: "L_r ∝ cos θ_o",
@@ -95,6 +148,28 @@ pub(super) const QUESTIONS: &[Question] = &[
         ],
         answer: "The BRDF ρ/π is constant, so a density proportional to it is constant too, and integrates to 1 over the hemisphere's 2π steradians: p = 1/(2π). \
                  Each draw is the integrand over the density. The light here is L cos^a θ, whose reflection is 2ρL/(a + 2).",
+        numbers: &[Number {
+            part: "",
+            symbol: "c",
+            what: "the factor c",
+            formula: "2ρ",
+            over_n: Some("c/n Σ L_i cos θ"),
+            letters: &[RHO],
+            slips: &[
+                classic(
+                    "whole-sphere",
+                    "4ρ",
+                    "the pdf taken for 1/(4π), the whole sphere's: twice the truth",
+                ),
+                slip("one-over-pi", "ρ", "the pdf taken for 1/π: over the hemisphere it is 1/(2π)"),
+                slip("no-pi", "2π ρ", "the 1/π of the BRDF forgotten"),
+                slip("pi-twice", "2ρ/π", "1/π twice"),
+                slip("no-pdf", "ρ/π", "no division by the pdf"),
+                slip("times-pdf", "ρ/(2π²)", "multiplied by the pdf instead of divided"),
+                slip("no-albedo", "2", "ρ forgotten"),
+                slip("no-brdf", "2π", "the BRDF forgotten"),
+            ],
+        }],
         wrong: &[
             Wrong {
                 answer: "ρ/n Σ L_i",
@@ -103,10 +178,6 @@ pub(super) const QUESTIONS: &[Question] = &[
             Wrong {
                 answer: "2ρ/n Σ L_i",
                 slip: "cos θ forgotten: twice the truth under a constant light, 3/2 under cos θ",
-            },
-            Wrong {
-                answer: "4ρ/n Σ L_i cos θ",
-                slip: "the density 1/(4π) of the whole sphere: twice the truth",
             },
             Wrong {
                 answer: "θ = πU/2",
@@ -131,6 +202,22 @@ pub(super) const QUESTIONS: &[Question] = &[
         ],
         answer: "The cosine and the π cancel, on paper: at cos θ → 0 the quotient of the two would be 0/0. The directions must be drawn from the new density, \
                  cos θ = √(1 − U); changing the formula alone is the classic mistake.",
+        numbers: &[Number {
+            part: "",
+            symbol: "c",
+            what: "the factor c",
+            formula: "ρ",
+            over_n: Some("c/n Σ L_i"),
+            letters: &[RHO],
+            slips: &[
+                slip("uniform", "2ρ", "the uniform estimator's factor: here p = cos θ/π"),
+                slip("no-pi", "π ρ", "the 1/π of the BRDF forgotten"),
+                slip("no-pdf", "ρ/π", "the pdf's 1/π forgotten, or no division by the pdf"),
+                slip("times-pdf", "ρ/π²", "multiplied by the pdf instead of divided"),
+                slip("no-albedo", "1", "ρ forgotten"),
+                slip("no-brdf", "π", "the BRDF forgotten"),
+            ],
+        }],
         wrong: &[
             Wrong {
                 answer: "ρ/n Σ L_i with uniform directions",
@@ -164,6 +251,7 @@ pub(super) const QUESTIONS: &[Question] = &[
                  variance is 0 exactly when p is proportional to an integrand of one sign: cosine under a uniform sky. But cosine does not always win: under the light cos^a θ both are equal \
                  at a = −½, and as a → −1 uniform directions have no variance and cosine ones an infinite one. With light only along the horizon, cos θ < ε, cosine's variance is \
                  the larger for ε < ¾: 8 times at ε = 0.1.",
+        numbers: &[],
         wrong: &[
             Wrong {
                 answer: "it converges at a better rate",

@@ -41,6 +41,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         ],
         answer: "From p the direction ω_i is drawn at random, uniformly or in proportion to cos θ, and a ray is followed to p_j; there the light is looked for. ω_i points away from p, towards where \
                  the light comes from. From the cube's top only the walls above it and the ceiling are seen; the ceiling lies in the light's plane and gets none of it, so two-bounce light comes by way of the walls.",
+        numbers: &[],
         wrong: &[
             Wrong {
                 answer: "ω_o is ω_i mirrored",
@@ -74,6 +75,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         ],
         answer: "Every vertex draws its next direction around its own normal. A path of three bounces sees more of the room than one of two: floor, ceiling and the cube's sides are reached now. Each bounce \
                  multiplies the light by the albedo of the face, 0.5 on a wall, so what comes after more bounces is less, but never nothing.",
+        numbers: &[],
         wrong: &[
             Wrong { answer: "p_j′ on the same wall as p_j", slip: "a flat face does not see itself" },
             Wrong {
@@ -103,6 +105,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         answer: "Radiance does not change along a ray: what arrives at p from ω_ij is what left p_j towards p, L_i(p, ω_ij) = L_o(p_j, −ω_ij). If L_o(p_j) is the light that p_j reflects once, this is the part of two bounces; \
                  an unbiased estimate of it in its place, with random numbers of its own, leaves the mean as it is, because the mean of a product of independent factors is the product of their means. So p_j may again ask a p_j′, and \
                  so on: that is path tracing, and Russian roulette (5) ends it. In this room the light after one bounce, 8F with F the form factor of two parallel squares, and after two, an integral over the walls, are known exactly.",
+        numbers: &[],
         wrong: &[
             Wrong {
                 answer: "1/n′, n′ the directions that are not occluded",

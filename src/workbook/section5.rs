@@ -1,6 +1,8 @@
 //! The questions of section 5, Russian roulette.
 
-use super::{Parameter, Question, Value, Wrong};
+use super::by_hand::{classic, slip};
+use super::{Letter, Number, Parameter, Question, Value, Wrong};
+use crate::roulette::Roulette;
 
 const ALBEDO: Parameter = Parameter {
     name: "albedo",
@@ -11,6 +13,31 @@ const VISIBILITY: Parameter = Parameter {
     name: "visibility",
     default: Value::Number(0.5),
     help: "the probability v that a vertex sees the light, in [0, 1]",
+};
+
+const P_RR: Letter = Letter {
+    names: &["p_rr", "prr", "p", "q"],
+    value: |options| Roulette::new(options.number("p-rr")).map(|roulette| roulette.p_rr()),
+    generic: 0.83,
+};
+
+const EXPECTED_BOUNCES: Number = Number {
+    part: "",
+    symbol: "E[N]",
+    what: "the expected number of bounces E[N]",
+    formula: "p_rr/(1 − p_rr)",
+    over_n: None,
+    letters: &[P_RR],
+    slips: &[
+        classic("coins", "1/(1 − p_rr)", "1/(1 − p) counts coins, N + 1: subtract 1"),
+        classic("exchanged", "(1 − p_rr)/p_rr", "p and 1 − p exchanged"),
+        classic("exchanged-coins", "1/p_rr", "p and 1 − p exchanged, and no 1 subtracted"),
+        classic("first", "p_rr", "p itself: the first bounce alone"),
+        slip("end", "1 − p_rr", "1 − p, the chance of ending"),
+        slip("variance", "p_rr/(1 − p_rr)²", "the variance p/(1 − p)²"),
+        slip("minus-two", "1/(1 − p_rr) − 2", "1 subtracted twice"),
+        slip("plus-one", "1/(1 − p_rr) + 1", "1 added instead of subtracted"),
+    ],
 };
 
 pub(super) const QUESTIONS: &[Question] = &[
@@ -28,12 +55,60 @@ pub(super) const QUESTIONS: &[Question] = &[
         answer: "N = k takes k times going on and one stop. N + 1 counts trials up to the first stop, which has probability 1 − p_rr, so its mean is \
                  1/(1 − p_rr) = 5. The division by p_rr pays for the rays that stop: E[X_rr] = p_rr · E[X]/p_rr = E[X], if the coin is independent of X. The same law is \
                  drawn in one step by inversion, N = ⌊ln(1 − U)/ln p_rr⌋.",
-        wrong: &[
-            Wrong { answer: "E[N] = 5", slip: "N + 1 counts the stop, N does not" },
-            Wrong { answer: "E[N] = 1/4", slip: "p_rr and 1 − p_rr swapped" },
-            Wrong { answer: "E[N] = 5/4", slip: "both" },
-            Wrong { answer: "P(N = 2) = 16/25", slip: "the stop forgotten: that is P(N ≥ 2)" },
+        numbers: &[
+            Number {
+                part: "(i)",
+                symbol: "P(N = 0)",
+                what: "the probability P(N = 0)",
+                formula: "1 − p_rr",
+                over_n: None,
+                letters: &[P_RR],
+                slips: &[
+                    slip("goes-on", "p_rr", "the chance of going on, not of ending"),
+                    slip("one-bounce", "p_rr (1 − p_rr)", "one bounce and then the end: that is N = 1"),
+                    slip("no-end", "1", "p⁰ = 1: the factor 1 − p for the end is missing"),
+                    slip("never", "0", "a path that ends at once has N = 0, which is possible"),
+                    slip("two-bounces", "p_rr²", "p², the chance of two bounces or more"),
+                ],
+            },
+            Number {
+                part: "(ii)",
+                symbol: "P(N = 2)",
+                what: "the probability P(N = 2)",
+                formula: "p_rr² (1 − p_rr)",
+                over_n: None,
+                letters: &[P_RR],
+                slips: &[
+                    classic("no-end", "p_rr²", "p²: the factor 1 − p for the end is missing"),
+                    slip("exchanged", "(1 − p_rr)² p_rr", "p and 1 − p exchanged"),
+                    slip(
+                        "one-bounce",
+                        "p_rr (1 − p_rr)",
+                        "p(1 − p), that is N = 1: coins counted instead of bounces",
+                    ),
+                    slip(
+                        "three-bounces",
+                        "p_rr³ (1 − p_rr)",
+                        "p³(1 − p), that is N = 3: one bounce too many",
+                    ),
+                    slip("cube", "p_rr³", "p³: one bounce too many, and the end is missing"),
+                    slip(
+                        "binomial",
+                        "3 p_rr² (1 − p_rr)",
+                        "the binomial 3p²(1 − p): the end comes last, in one way only",
+                    ),
+                    slip(
+                        "exchanged-no-end",
+                        "(1 − p_rr)²",
+                        "(1 − p)²: p and 1 − p exchanged, the end missing",
+                    ),
+                    slip("at-most", "1 − p_rr³", "P(N ≤ 2), not P(N = 2)"),
+                    slip("twice", "2 p_rr² (1 − p_rr)", "2p²(1 − p): the order is fixed, it counts once"),
+                ],
+            },
+            Number { part: "(iii)", ..EXPECTED_BOUNCES },
         ],
+        wrong: &[],
         on_the_original: Some(
             "p_rr must lie in (0, 1], since p_rr = 0 loses all light, and the coin must be independent of X; the original says neither. “Geometric” counts trials there (mean 1/p), and failures in some libraries (mean 1/p − 1): look before using one.",
         ),
@@ -54,11 +129,8 @@ pub(super) const QUESTIONS: &[Question] = &[
         latex: &[r"E[N] = \frac{1}{1-\frac15} - 1 = \frac54 - 1 = \frac14"],
         answer: "Four rays of five stop at once. That is cheap, and it stays unbiased; but with an albedo of 0.8 every bounce that is taken weighs ρ/p_rr = 4 times more than the last \
                  one, and for p_rr ≤ ρ² the variance is infinite. The mean of a thousand such paths is usually too dark, its error bar too short.",
-        wrong: &[
-            Wrong { answer: "5/4", slip: "the stop counted as a bounce" },
-            Wrong { answer: "4", slip: "p_rr and 1 − p_rr swapped" },
-            Wrong { answer: "1/5", slip: "P(N ≥ 1), the first term of E[N] alone" },
-        ],
+        numbers: &[EXPECTED_BOUNCES],
+        wrong: &[],
         on_the_original: None,
         example: "q5_2_few_bounces",
         module: "roulette",
@@ -85,6 +157,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         answer: "It grows, slowly at first and without bound as p_rr → 1, and its standard deviation is larger than it everywhere. What that buys is seen where every vertex sees the \
                  light with probability v and reflects ρ of it: a larger q lowers the variance and raises the cost, and their product is least at q*, between ρ and 1. Stopping after a fixed \
                  number of bounces instead is biased: cheaper at first, overtaken by roulette later.",
+        numbers: &[],
         wrong: &[
             Wrong { answer: "it lowers E[N]", slip: "p_rr is the probability of going on, not of stopping" },
             Wrong {

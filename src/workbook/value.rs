@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde_json::json;
 
-use super::print::shortened;
+use crate::numbers::{parseable, shortened};
 
 /// What an option holds. An option takes values of the kind of its default.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,12 +95,6 @@ impl From<[f64; 3]> for Value {
     fn from(point: [f64; 3]) -> Self {
         Self::Point(point)
     }
-}
-
-/// All digits of a number, in the shorter form where the plain one is long: either is read back as the same number.
-pub(super) fn parseable(number: f64) -> String {
-    let (plain, scientific) = (number.to_string(), format!("{number:e}"));
-    if plain.len() <= 12 || plain.len() <= scientific.len() { plain } else { scientific }
 }
 
 /// A number or a fraction of two: `0.8`, `4/5`.

@@ -6,6 +6,8 @@
 //!
 //! One's own estimator for question 3.5 is checked by `examples/check_mine.rs`.
 
+pub mod mistakes;
+
 use std::f64::consts::PI;
 
 use crate::error::{Result, require};

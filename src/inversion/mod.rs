@@ -5,6 +5,8 @@
 //!
 //! One's own estimator for question 1.1 is checked by `examples/check_mine.rs`.
 
+pub mod mistakes;
+
 use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
 

@@ -1,0 +1,102 @@
+//! Where a wrong estimator can be seen to be wrong with pencil and paper.
+
+use std::fmt;
+
+use super::attempt::Attempt;
+use super::exercise::{Exercise, Probe};
+use crate::stream::Stream;
+
+/// Random numbers at which an estimator's draw is not the right one.
+#[derive(Debug, Clone)]
+pub struct Counterexample {
+    /// The probe.
+    pub probe: &'static Probe,
+    /// The uniform numbers that the draw was made of, in the order in which it took them.
+    pub numbers: Vec<f64>,
+    /// The draw.
+    pub yours: f64,
+    /// What the right estimator makes of the same numbers.
+    pub right: f64,
+}
+
+/// In a sentence: `For instance on “λ = 2”, at u = ½: yours is 1.39, right is 0.35.`
+impl fmt::Display for Counterexample {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let named = self.numbers.iter().zip(["u", "v"]).map(|(number, name)| {
+            let number = EASY.iter().find(|(easy, _)| easy == number).map_or("", |(_, text)| text);
+            format!("{name} = {number}")
+        });
+        let (numbers, yours, right) = (named.collect::<Vec<_>>().join(", "), self.yours, self.right);
+        write!(f, "For instance on “{}”, at {numbers}: yours is {yours:.4}, right is {right:.4}.", self.probe)
+    }
+}
+
+/// Numbers with which one can work by hand.
+const EASY: [(f64, &str); 4] = [(0.5, "½"), (0.75, "¾"), (0.25, "¼"), (0.125, "⅛")];
+
+/// It uses its numbers as a right estimator does if both are in one constant ratio, or differ by a constant,
+/// over all points of a probe, or if their ratio at a point is the same on every probe: what they are
+/// multiplied by may be wrong, where they look is then alike.
+pub(super) fn counterexample(exercise: &'static Exercise, attempt: &Attempt<'_>) -> Option<Counterexample> {
+    let probes: Vec<_> = exercise.probes().iter().filter(|probe| probe.averages_draws).collect();
+    exercise.right().iter().find_map(|right| {
+        let taken = |draw: &dyn Fn(usize, f64, &mut Stream) -> f64, numbers: &[f64]| {
+            let mut rng = Stream::scripted(numbers);
+            let value = draw(0, 1.0, &mut rng);
+            (rng.random_numbers(), value)
+        };
+        let all = [0.5, 0.25, 0.75, 0.125, 0.5, 0.25];
+        let (count, _) = taken(&**right, &all);
+        if !(1..=2).contains(&count) || taken(&*attempt.draw, &all).0 != count {
+            return None;
+        }
+        let points: Vec<Vec<f64>> = EASY
+            .iter()
+            .flat_map(|(u, _)| match count {
+                1 => vec![vec![*u]],
+                _ => EASY.iter().map(|(v, _)| vec![*u, *v]).collect(),
+            })
+            .collect();
+        let pairs: Vec<Vec<[f64; 2]>> = probes
+            .iter()
+            .map(|probe| {
+                let of = |draw: &dyn Fn(usize, f64, &mut Stream) -> f64, point: &Vec<f64>| {
+                    draw(probe.index(), 1.0, &mut Stream::scripted(point))
+                };
+                points.iter().map(|point| [of(&*attempt.draw, point), of(&**right, point)]).collect()
+            })
+            .collect();
+        if !(alike_on_each_probe(&pairs) || alike_at_each_point(&pairs)) {
+            return None;
+        }
+        let off = |[yours, right]: [f64; 2]| (yours - right).abs() > 0.05 * right.abs() && right != 0.0;
+        probes.iter().zip(&pairs).find_map(|(probe, pairs)| {
+            let (point, [yours, right]) = points.iter().zip(pairs).find(|(_, pair)| off(**pair))?;
+            Some(Counterexample { probe, numbers: point.clone(), yours: *yours, right: *right })
+        })
+    })
+}
+
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-9 * a.abs().max(b.abs())
+}
+
+/// One ratio, or one difference, over all points of each probe.
+fn alike_on_each_probe(pairs: &[Vec<[f64; 2]>]) -> bool {
+    pairs.iter().all(|pairs| {
+        let one_ratio = |[yours, right]: [f64; 2]| pairs.iter().all(|[y, r]| same(y * right, r * yours));
+        let one_difference = |[yours, right]: [f64; 2]| pairs.iter().all(|[y, r]| same(y + right, r + yours));
+        pairs.iter().find(|[_, right]| *right != 0.0).copied().is_some_and(one_ratio)
+            || pairs.first().copied().is_some_and(one_difference)
+    })
+}
+
+/// At each point one ratio on all probes, and none of it where there is nothing.
+fn alike_at_each_point(pairs: &[Vec<[f64; 2]>]) -> bool {
+    let points = pairs.first().map_or(0, Vec::len);
+    (0..points).all(|point| {
+        let at: Vec<_> = pairs.iter().filter_map(|pairs| pairs.get(point).copied()).collect();
+        let Some([yours, right]) = at.iter().find(|[_, right]| *right != 0.0).copied() else { return true };
+        at.iter().all(|[y, r]| same(y * right, r * yours))
+    })
+}

@@ -1,0 +1,422 @@
+//! What an estimator is asked for, on which problems it is tried, and the classic mistakes in it.
+//!
+//! A topic states an exercise once: its problems, a right estimator of them, and the wrong ones, each an
+//! estimator that runs. What a mistake comes to on a problem is not derived a second time: it is the mean of
+//! the wrong estimator over scrambled Sobol points, found when it is first asked for. That rule alone is
+//! enough: over 16 sets of 1,024 points it knows the gallery's ratios to 1e-4 or so in a fraction of a
+//! millisecond each, and says how well. ([`exactly`](super::exactly()) takes up to a second for a jump.)
+
+use std::fmt;
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
+
+use super::attempt::Attempt;
+use super::measure::Ratio;
+use crate::estimator::from_fn;
+use crate::placement::sobol;
+use crate::run::{Budget, estimate};
+use crate::stream::Stream;
+
+/// A problem of known truth, of which an estimator is asked for.
+///
+/// One's own estimator is a closure of the problem and of random numbers: see [`Attempt::new`].
+pub trait Problem: fmt::Display + Sync + Sized + 'static {
+    /// The exercise that it belongs to.
+    fn exercise() -> &'static Exercise;
+
+    /// The problems that an estimator is tried on, in the order of the exercise's probes.
+    fn all() -> &'static [Self];
+
+    /// What a right estimator's draws average to.
+    fn truth(&self) -> f64;
+
+    /// What ratios are taken to, above 0: |truth|, or something of that size where the truth is 0.
+    fn scale(&self) -> f64 {
+        self.truth().abs()
+    }
+
+    /// What is averaged: the draw itself, or a function of it.
+    fn value(&self, draw: f64) -> f64 {
+        draw
+    }
+
+    /// Whether that is the draw itself.
+    fn averages_draws(&self) -> bool {
+        true
+    }
+
+    /// Its numbers and words by name, as a program in another language takes them.
+    fn given(&self) -> Vec<(&'static str, Given)>;
+
+    /// Its parameters by symbol: a draw may be wrong by such a factor.
+    fn factors(&self) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+}
+
+/// A parameter of a problem.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Given {
+    /// A number.
+    Number(f64),
+    /// One of a few words.
+    Word(&'static str),
+}
+
+/// As one word.
+impl fmt::Display for Given {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Word(word) => f.write_str(word),
+        }
+    }
+}
+
+/// One draw: on probe number so-and-so, times a factor, from these random numbers.
+pub(super) type Draw<'a> = dyn Fn(usize, f64, &mut Stream) -> f64 + Send + Sync + 'a;
+
+pub(super) fn erased<'a, P: Problem>(
+    draw: impl Fn(&P, &mut Stream) -> f64 + Send + Sync + 'a,
+) -> Box<Draw<'a>> {
+    Box::new(move |probe, factor, rng| match P::all().get(probe) {
+        Some(problem) => problem.value(factor * draw(problem, rng)),
+        None => f64::NAN,
+    })
+}
+
+/// A problem of an exercise, in words and numbers.
+#[derive(Debug)]
+pub struct Probe {
+    exercise: fn() -> &'static Exercise,
+    index: usize,
+    text: String,
+    truth: f64,
+    scale: f64,
+    pub(super) averages_draws: bool,
+    given: Vec<(&'static str, Given)>,
+    pub(super) factors: Vec<(&'static str, f64)>,
+}
+
+impl Probe {
+    /// The exercise that it belongs to.
+    pub fn exercise(&self) -> &'static Exercise {
+        (self.exercise)()
+    }
+
+    /// What a right estimator's draws average to.
+    pub fn truth(&self) -> f64 {
+        self.truth
+    }
+
+    /// What ratios are taken to: |truth|, or something of that size where the truth is 0.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// The ratio of a right estimator: 1, or 0 where the truth is 0.
+    pub fn right_ratio(&self) -> f64 {
+        self.truth / self.scale
+    }
+
+    /// Its place among the exercise's probes, from 0.
+    pub fn index(&self) -> usize {
+        self.index
+    }
+
+    /// Its numbers and words by name.
+    pub fn given(&self) -> &[(&'static str, Given)] {
+        &self.given
+    }
+
+    /// Whether a ratio is not a right estimator's, as far as draws can show.
+    pub fn sees(&self, ratio: Ratio) -> bool {
+        ratio.differs(Ratio::exact(self.right_ratio()))
+    }
+}
+
+/// The probe in a few words: `mean of X, λ = 0.37`.
+impl fmt::Display for Probe {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+/// A wrong estimator and what is wrong with it.
+pub struct Mistake {
+    words: Words,
+    index: usize,
+    wrong: Box<Draw<'static>>,
+}
+
+/// What a mistake is, in words.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Words {
+    pub id: &'static str,
+    pub question: &'static str,
+    pub name: &'static str,
+    pub formula: &'static str,
+    pub mend: &'static str,
+}
+
+impl Mistake {
+    /// The mistake that `wrong` commits.
+    pub(crate) fn new<P: Problem>(
+        words: Words,
+        wrong: impl Fn(&P, &mut Stream) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Self { words, index: 0, wrong: erased(wrong) }
+    }
+
+    /// A name for programs, which stays: `log10`.
+    pub fn id(&self) -> &'static str {
+        self.words.id
+    }
+
+    /// What it is called.
+    pub fn name(&self) -> &'static str {
+        self.words.name
+    }
+
+    /// The worksheet's question in which it is made.
+    pub fn question(&self) -> &'static str {
+        self.words.question
+    }
+
+    /// The formula that commits it.
+    pub fn formula(&self) -> &'static str {
+        self.words.formula
+    }
+
+    /// How to mend it.
+    pub fn mend(&self) -> &'static str {
+        self.words.mend
+    }
+}
+
+impl fmt::Debug for Mistake {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.words.fmt(f)
+    }
+}
+
+/// What an exercise is, in words.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct About {
+    pub id: &'static str,
+    pub name: &'static str,
+    /// Worksheet questions, each with the probe that is its own case.
+    pub questions: &'static [(&'static str, usize)],
+    /// What one draw is, and what the words of the problems mean: lines of text.
+    pub draw: &'static str,
+}
+
+/// An estimator asked for: the probes that it is tried on, a right one, and the classic mistakes.
+pub struct Exercise {
+    about: About,
+    probes: Vec<Probe>,
+    right: Vec<Box<Draw<'static>>>,
+    mistakes: Vec<Mistake>,
+    ratios: OnceLock<Vec<Vec<Ratio>>>,
+    compounds: OnceLock<Vec<Compound>>,
+}
+
+/// A right estimator, as an exercise holds it.
+pub(crate) type Right<P> = fn(&P, &mut Stream) -> f64;
+
+impl Exercise {
+    /// The exercise of these problems, with the right estimators whose use of their random numbers is that of
+    /// the sheet.
+    pub(crate) fn new<P: Problem>(about: About, right: &[Right<P>], mistakes: Vec<Mistake>) -> Self {
+        let probe = |(index, problem): (usize, &P)| Probe {
+            exercise: P::exercise,
+            index,
+            text: problem.to_string(),
+            truth: problem.truth(),
+            scale: problem.scale(),
+            averages_draws: problem.averages_draws(),
+            given: problem.given(),
+            factors: problem.factors(),
+        };
+        Self {
+            about,
+            probes: P::all().iter().enumerate().map(probe).collect(),
+            right: right.iter().map(|right| erased::<P>(*right)).collect(),
+            mistakes: (0..).zip(mistakes).map(|(index, mistake)| Mistake { index, ..mistake }).collect(),
+            ratios: OnceLock::new(),
+            compounds: OnceLock::new(),
+        }
+    }
+
+    /// A name for programs: `reflected`.
+    pub fn id(&self) -> &'static str {
+        self.about.id
+    }
+
+    /// What it is called: `reflected light`.
+    pub fn name(&self) -> &'static str {
+        self.about.name
+    }
+
+    /// What one draw is, and what the words of the probes mean.
+    pub fn draw(&self) -> &'static str {
+        self.about.draw
+    }
+
+    /// The worksheet's questions that ask for it.
+    pub fn questions(&self) -> impl Iterator<Item = &'static str> + use<> {
+        self.about.questions.iter().map(|(question, _)| *question)
+    }
+
+    /// Its probes, the sheet's own case first.
+    pub fn probes(&self) -> &[Probe] {
+        &self.probes
+    }
+
+    /// The same, with this question's own case first.
+    pub fn probes_of(&self, question: &str) -> Vec<&Probe> {
+        let own = self.about.questions.iter().find(|(asked, _)| *asked == question);
+        let own = own.map_or(0, |(_, own)| *own);
+        let mut probes: Vec<_> = self.probes.iter().collect();
+        probes[..(own + 1).min(self.probes.len())].rotate_right(1);
+        probes
+    }
+
+    /// Its classic mistakes.
+    pub fn mistakes(&self) -> &[Mistake] {
+        &self.mistakes
+    }
+
+    /// What a mistake's draws average to on a probe, over [`Probe::scale`].
+    pub fn ratio(&self, mistake: &Mistake, probe: &Probe) -> Ratio {
+        let ratios = self.ratios.get_or_init(|| {
+            let of = |mistake: &Mistake| {
+                self.probes.par_iter().map(|probe| ratio_of(&*mistake.wrong, probe, 1.0)).collect()
+            };
+            self.mistakes.par_iter().map(of).collect()
+        });
+        ratios.get(mistake.index).and_then(|of| of.get(probe.index)).copied().unwrap_or(Ratio::UNKNOWN)
+    }
+
+    /// The mean square of a mistake's draws on a probe, over the scale's.
+    pub(super) fn square(&self, mistake: &Mistake, probe: &Probe) -> f64 {
+        let squared = |index: usize, factor: f64, rng: &mut Stream| {
+            let ratio = (mistake.wrong)(index, factor, rng) / probe.scale;
+            ratio * ratio * probe.scale
+        };
+        ratio_of(&squared, probe, 1.0).mean
+    }
+
+    /// A mistake as an estimator of one's own.
+    pub fn attempt_of(&'static self, mistake: &'static Mistake) -> Attempt<'static> {
+        self.attempt_times(1.0, mistake)
+    }
+
+    /// The same with every draw multiplied by a constant: two mistakes at once.
+    pub fn attempt_times(&'static self, constant: f64, mistake: &'static Mistake) -> Attempt<'static> {
+        let draw = move |probe, factor: f64, rng: &mut Stream| (mistake.wrong)(probe, constant * factor, rng);
+        Attempt { exercise: self, draw: Box::new(draw) }
+    }
+
+    /// Its right estimators: each a draw of a probe from these numbers.
+    pub(super) fn right(&self) -> &[Box<Draw<'static>>] {
+        &self.right
+    }
+
+    /// A constant times a right estimator or a mistake, what each comes to on every probe.
+    pub(super) fn compounds(&self) -> &[Compound] {
+        self.compounds.get_or_init(|| {
+            let symbols = self.probes.first().map_or(&[][..], |probe| &probe.factors);
+            let constants = (0..CONSTANTS.len() + 2 * symbols.len()).map(|which| (which, self.named(which)));
+            let bases =
+                || std::iter::once(None).chain(self.mistakes.iter().map(|mistake| Some(mistake.index)));
+            let all =
+                constants.flat_map(|(which, name)| bases().map(move |base| (which, name.clone(), base)));
+            let all: Vec<_> = all.collect();
+            let of = |(which, factor, base): (usize, String, Option<usize>)| {
+                let on = |probe: &Probe| self.multiplied(which, base, probe);
+                let ratios = self.probes.iter().map(on).collect();
+                Compound { factor, base, ratios }
+            };
+            all.into_par_iter().map(of).collect()
+        })
+    }
+
+    /// Constant number `which`: those of mathematics first, then the parameters and their inverses.
+    fn factor(&self, which: usize, probe: &Probe) -> f64 {
+        match (CONSTANTS.get(which), which.checked_sub(CONSTANTS.len())) {
+            (Some((_, constant)), _) => *constant,
+            (None, Some(parameter)) => {
+                let value = probe.factors.get(parameter / 2).map_or(f64::NAN, |(_, value)| *value);
+                if parameter % 2 == 0 { value } else { 1.0 / value }
+            }
+            (None, None) => f64::NAN,
+        }
+    }
+
+    fn named(&self, which: usize) -> String {
+        let parameter = |parameter: usize| {
+            let symbols = self.probes.first().and_then(|probe| probe.factors.get(parameter / 2));
+            let symbol = symbols.map_or("", |(symbol, _)| *symbol);
+            if parameter.is_multiple_of(2) {
+                symbol.to_owned()
+            } else if symbol.contains(' ') {
+                format!("1/({symbol})")
+            } else {
+                format!("1/{symbol}")
+            }
+        };
+        CONSTANTS.get(which).map_or_else(|| parameter(which - CONSTANTS.len()), |(name, _)| (*name).into())
+    }
+
+    fn multiplied(&self, which: usize, base: Option<usize>, probe: &Probe) -> Ratio {
+        let factor = self.factor(which, probe);
+        let mistake = base.and_then(|base| self.mistakes.get(base));
+        if probe.averages_draws {
+            let ratio = mistake
+                .map_or_else(|| Ratio::exact(probe.right_ratio()), |mistake| self.ratio(mistake, probe));
+            return ratio.times(factor);
+        }
+        let draw = mistake.map(|mistake| &mistake.wrong).or(self.right.first());
+        draw.map_or(Ratio::UNKNOWN, |draw| ratio_of(&**draw, probe, factor))
+    }
+}
+
+impl fmt::Debug for Exercise {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Exercise").field(&self.about.name).finish()
+    }
+}
+
+/// A constant times a mistake (by its index), or times a right estimator.
+pub(super) struct Compound {
+    pub factor: String,
+    pub base: Option<usize>,
+    pub ratios: Vec<Ratio>,
+}
+
+/// The constants by which draws are usually wrong.
+const CONSTANTS: [(&str, f64); 8] = {
+    use std::f64::consts::{FRAC_1_PI, PI, TAU};
+    [
+        ("2", 2.0),
+        ("½", 0.5),
+        ("π", PI),
+        ("1/π", FRAC_1_PI),
+        ("4", 4.0),
+        ("¼", 0.25),
+        ("2π", TAU),
+        ("1/(2π)", 0.5 * FRAC_1_PI),
+    ]
+};
+
+/// Sobol points of a set, and sets: the mean over the sets has an error of its own.
+const POINTS: u64 = 1 << 10;
+const SETS: u64 = 16;
+
+fn ratio_of(draw: &Draw<'_>, probe: &Probe, factor: f64) -> Ratio {
+    let draws = from_fn(|rng| draw(probe.index, factor, rng));
+    let mean = sobol(&draws, POINTS).and_then(|sets| estimate(&sets, Budget::Draws(SETS), 1));
+    mean.map_or(Ratio::UNKNOWN, |mean| Ratio::of(&mean, probe.scale))
+}

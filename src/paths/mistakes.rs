@@ -1,0 +1,279 @@
+//! Mistakes in following paths through the box room.
+//!
+//! A wrong estimator is a right one followed in a way of its own. One light sample shared by all vertices of
+//! a path is no mistake: it is independent of every direction, so the mean stays; one that shares the
+//! *directions'* random numbers is.
+
+use std::f64::consts::PI;
+use std::fmt;
+use std::ops::RangeInclusive;
+use std::sync::LazyLock;
+
+use super::way::{BY_CHANCE, GOES_ON, Hidden, RIGHT, Spot, TRIES, Way};
+use crate::box_room::{BoxRoom, Scene};
+use crate::check::{About, Exercise, Given, Mistake, Problem, Words};
+use crate::hemisphere::Hemisphere;
+use crate::stream::Stream;
+
+/// The light that leaves a room's point p after some bounces: the estimator's draw is one of an estimate of
+/// it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LightOfPaths {
+    /// The room, which says where p is, what emits and what the albedos are.
+    pub room: BoxRoom,
+    pub(super) first: u32,
+    pub(super) last: u32,
+}
+
+impl LightOfPaths {
+    /// How many bounces count, the first and the last counted in: `2..=2` is the light of exactly two,
+    /// `0..=3` that of up to three.
+    pub fn bounces(&self) -> RangeInclusive<u32> {
+        self.first..=self.last
+    }
+
+    /// The light after k bounces, where it is a closed form or an integral of one.
+    fn after(&self, k: u32) -> f64 {
+        let (room, scene) = (&self.room, self.room.scene());
+        match k {
+            0 => room.emitted(&room.point()),
+            // a furnace: from the cube's top the next vertex is on a wall
+            _ if scene.light_half_width == 0.0 => {
+                scene.emission * room.albedo(&room.point()) * scene.wall_albedo.powi(k as i32 - 1)
+            }
+            1 => room.one_bounce(),
+            2 => room.two_bounces().unwrap_or(f64::NAN),
+            _ => f64::NAN,
+        }
+    }
+}
+
+static PROBLEMS: LazyLock<Vec<LightOfPaths>> = LazyLock::new(|| {
+    // odd numbers, p off the axes: a light of area 1 hides its area, equal albedos hide which was taken
+    let odd = Scene {
+        wall_albedo: 0.61,
+        cube_albedo: 0.37,
+        radiance: 7.0,
+        light_half_width: 0.8,
+        emission: 0.0,
+        point: [0.2, -0.1, 1.0],
+    };
+    let furnace = Scene { radiance: 0.0, light_half_width: 0.0, emission: 2.5, ..odd };
+    let even = |albedo| Scene { wall_albedo: albedo, cube_albedo: albedo, ..furnace };
+    [
+        (Scene::default(), 2..=2),
+        (odd, 1..=1),
+        // the cube hides from this p nearly half of the light
+        (Scene { point: [0.7, 0.1, 0.0], ..odd }, 1..=1),
+        // grazing light, high on a wall
+        (Scene { point: [2.0, 0.4, 3.7], ..odd }, 1..=1),
+        (odd, 2..=2),
+        (furnace, 0..=2),
+        (Scene { emission: 0.4, ..even(0.7) }, 3..=3),
+        (even(0.8), 0..=6),
+    ]
+    .into_iter()
+    .filter_map(|(scene, bounces)| {
+        let (first, last) = bounces.into_inner();
+        Some(LightOfPaths { room: BoxRoom::new(scene).ok()?, first, last })
+    })
+    .collect()
+});
+
+impl Problem for LightOfPaths {
+    fn exercise() -> &'static Exercise {
+        static EXERCISE: LazyLock<Exercise> = LazyLock::new(|| {
+            Exercise::new(ABOUT, &[|p: &LightOfPaths, rng: &mut Stream| RIGHT.draw(p, rng)], mistakes())
+        });
+        &EXERCISE
+    }
+
+    fn all() -> &'static [Self] {
+        &PROBLEMS
+    }
+
+    fn truth(&self) -> f64 {
+        self.bounces().map(|k| self.after(k)).sum()
+    }
+
+    fn given(&self) -> Vec<(&'static str, Given)> {
+        let (scene, [x, y, z]) = (self.room.scene(), self.room.scene().point);
+        [
+            ("wall_albedo", scene.wall_albedo),
+            ("cube_albedo", scene.cube_albedo),
+            ("radiance", scene.radiance),
+            ("light_half_width", scene.light_half_width),
+            ("emission", scene.emission),
+            ("x", x),
+            ("y", y),
+            ("z", z),
+            ("first", self.first.into()),
+            ("last", self.last.into()),
+        ]
+        .map(|(name, number)| (name, Given::Number(number)))
+        .into()
+    }
+
+    fn factors(&self) -> Vec<(&'static str, f64)> {
+        let scene = self.room.scene();
+        vec![
+            ("ρ_wall", scene.wall_albedo),
+            ("ρ_cube", scene.cube_albedo),
+            ("1 − ρ_wall", 1.0 - scene.wall_albedo),
+        ]
+    }
+}
+
+/// The bounces and the scene in a few words: p, the albedos, what emits, and the light's half-width.
+impl fmt::Display for LightOfPaths {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (scene, [x, y, z]) = (self.room.scene(), self.room.scene().point);
+        match (self.first, self.last) {
+            (first, last) if first == last => write!(f, "k = {last}")?,
+            (0, last) => write!(f, "k ≤ {last}")?,
+            (first, last) => write!(f, "k = {first}…{last}")?,
+        }
+        write!(f, ", p at {x}, {y}, {z}, walls {}, cube {}", scene.wall_albedo, scene.cube_albedo)?;
+        if scene.light_half_width > 0.0 {
+            write!(f, ", light {} over ±{}", scene.radiance, scene.light_half_width)?;
+        }
+        if scene.emission > 0.0 {
+            write!(f, ", all emit {}", scene.emission)?;
+        }
+        Ok(())
+    }
+}
+
+const ABOUT: About = About {
+    id: "paths",
+    name: "paths in the box room",
+    questions: &[("4.3", 0)],
+    draw: "A draw is one of an estimate of the radiance that leaves p after `first` to `last` bounces, all summed; a\n\
+           bounce is a vertex between light and eye, p among them. The room is [−2, 2] × [−2, 2] × [0, 4] metres, z\n\
+           up; its walls, floor and ceiling reflect wall_albedo. The cube [−1/2, 1/2] × [−1/2, 1/2] × [0, 1] stands\n\
+           on the floor and reflects cube_albedo. All is diffuse. The light is the square |x|, |y| ≤ light_half_width\n\
+           of the ceiling, faces down, emits radiance and reflects nothing; every other face emits emission.\n\
+           p = (x, y, z) lies on a face; bounce 0 is what p itself emits.",
+};
+
+/// A right estimator followed in a wrong way.
+fn followed([question, id, name, formula, mend]: [&'static str; 5], way: Way) -> Mistake {
+    let words = Words { id, question, name, formula, mend };
+    Mistake::new(words, move |p: &LightOfPaths, rng| way.draw(p, rng))
+}
+
+#[rustfmt::skip] // a list to be read
+fn mistakes() -> Vec<Mistake> {
+    let area = "a point of the light has density 1/A: divide by it";
+    let turn = "dω = cos θ′ dA/r²: sampling an area takes all three";
+    let cosine = "cos θ is the surface's, once for every light sample";
+    let n = "divide by all n draws: one that finds nothing adds 0";
+    let direction = "a bounce weighs f_r cos θ/p(ω), with the p that ω was drawn from";
+    let product = "the throughput is the product of all weights so far";
+    let vertices = "k counts the vertices between light and eye";
+    let emits = "every vertex that is asked for adds its L_e times the throughput";
+    let chance = "end a path by chance, and divide by the chance of going on";
+    let sampled =
+        |id, name, formula, mend, sample| followed(["4.3", id, name, formula, mend], Way { sample, ..RIGHT });
+    let counted = |question, id, name, formula, mend, counted| {
+        followed([question, id, name, formula, mend], Way { counted, ..RIGHT })
+    };
+    let way = |id, name, formula, mend, way| followed(["4.3", id, name, formula, mend], way);
+    let bounce = |id, name, formula, directions, weight| {
+        way(id, name, formula, direction, Way { directions, weight, ..RIGHT })
+    };
+    let ended = |id, name, formula, way| followed(["5", id, name, formula, chance], way);
+    vec![
+        sampled("no-area", "the light's area forgotten", "f_r L cos θ cos θ′/r²", area,
+            |s| s.here * s.there / (s.r * s.r)),
+        sampled("times-density", "multiplied by the light's density", "f_r L cos θ cos θ′/(r² A)", area,
+            |s| s.here * s.there / (s.r * s.r * s.area)),
+        sampled("half-width", "the light's half-width for its width", "A = w²",
+            "A is the square of the width, twice the half-width",
+            |s| 0.25 * s.area * s.here * s.there / (s.r * s.r)),
+        sampled("no-light-cos", "the light's cosine forgotten", "f_r L cos θ A/r²", turn,
+            |s| s.here * s.area / (s.r * s.r)),
+        sampled("r", "r for r²", "f_r L cos θ cos θ′ A/r", turn, |s| s.here * s.there * s.area / s.r),
+        sampled("no-r", "r² forgotten", "f_r L cos θ cos θ′ A", turn, |s| s.here * s.there * s.area),
+        sampled("no-cos", "the surface's cosine forgotten at the light sample", "f_r L cos θ′ A/r²", cosine,
+            |s| s.there * s.area / (s.r * s.r)),
+        sampled("cos-twice", "the surface's cosine twice at the light sample", "f_r L cos² θ cos θ′ A/r²",
+            cosine, |s| s.here * s.here * s.there * s.area / (s.r * s.r)),
+        sampled("neither-cos", "both cosines forgotten at the light sample", "f_r L A/r²", turn,
+            |s| s.area / (s.r * s.r)),
+        way("middle", "the light's middle for every sample", "y = (0, 0, 4)",
+            "draw a point of the light for every path", Way { spot: Spot::Middle, ..RIGHT }),
+        way("same-numbers", "the same random numbers for light and directions", "one (U, V) a path",
+            "directions and light samples take numbers of their own", Way { spot: Spot::Reused, ..RIGHT }),
+        way("occlusion", "occlusion ignored", "V = 1", "a light sample that the cube hides adds 0",
+            Way { hidden: Hidden::Lit, ..RIGHT }),
+        way("hidden-left-out", "hidden light samples left out of n", "divided by the visible ones", n,
+            Way { hidden: Hidden::Redrawn, ..RIGHT }),
+        Mistake::new(
+            Words {
+                id: "dark-left-out",
+                question: "4.3",
+                name: "rays without light left out of n",
+                formula: "divided by those that found it",
+                mend: n,
+            },
+            |p: &LightOfPaths, rng| {
+                let scene = p.room.scene();
+                if p.first == p.last && scene.light_half_width > 0.0 {
+                    // each path that finds the light brings the same, so there is no need to look
+                    return scene.radiance
+                        * p.room.albedo(&p.room.point())
+                        * scene.wall_albedo.powi(p.last as i32 - 1);
+                }
+                let mut tries = (0..TRIES).map(|_| BY_CHANCE.draw(p, rng));
+                tries.find(|light| *light > 0.0).unwrap_or(0.0)
+            },
+        ),
+        way("counted-twice", "the light found by chance and sampled", "both added",
+            "where the light is sampled, a ray that happens on it adds nothing",
+            Way { chance: true, ..RIGHT }),
+        way("no-pi-light", "1/π of the BRDF forgotten at the light sample", "ρ L cos θ cos θ′ A/r²",
+            "f_r = ρ/π", Way { last: |albedo, _| PI * albedo, ..RIGHT }),
+        way("no-pi", "1/π of the BRDF forgotten at every bounce", "f_r = ρ", "f_r = ρ/π",
+            Way { last: |albedo, _| PI * albedo, carried: |throughput, albedo, _| throughput * albedo * PI, ..RIGHT }),
+        way("no-last-albedo", "the last vertex's albedo forgotten", "L cos θ cos θ′ A/(π r²)",
+            "the vertex that the light falls on reflects ρ of it, too", Way { last: |_, _| 1.0, ..RIGHT }),
+        way("one-albedo", "p's albedo at every vertex", "ρ(p)ᵏ",
+            "take each vertex's own albedo: a wall's, or the cube's",
+            Way { last: |_, of_p| of_p, carried: |throughput, _, of_p| throughput * of_p, ..RIGHT }),
+        way("no-throughput", "the throughput never multiplied", "Σ L_e", product,
+            Way { carried: |throughput, _, _| throughput, ..RIGHT }),
+        way("replaced", "the throughput replaced, not multiplied", "throughput = ρ", product,
+            Way { carried: |_, albedo, _| albedo, ..RIGHT }),
+        way("mirror", "a mirror bounce for a diffuse one", "ω = reflected ray at p_j",
+            "a diffuse surface sends light everywhere: draw ω anew at every vertex",
+            Way { mirror: true, ..BY_CHANCE }),
+        bounce("uniform-no-cos", "cos θ forgotten, uniform directions", "f_r 2π a bounce",
+            Hemisphere::Uniform, |_| 2.0),
+        bounce("cosine-weight", "uniform directions, the cosine weight", "ρ a bounce", Hemisphere::Uniform,
+            |_| 1.0),
+        bounce("uniform-weight", "cosine directions, the uniform weight", "2ρ cos θ a bounce",
+            Hemisphere::Cosine, |cos| 2.0 * cos),
+        bounce("cos-kept", "cosine directions, cos θ kept", "ρ cos θ a bounce", Hemisphere::Cosine,
+            |cos| cos),
+        counted("4.2", "one-more", "one bounce too many", "k + 1", vertices,
+            |[first, last]| { if first == last { [last + 1, last + 1] } else { [first, last + 1] } }),
+        counted("4.2", "one-less", "one bounce too few", "k − 1", vertices, |[first, last]| {
+            let last = last.saturating_sub(1);
+            [first.min(last), last]
+        }),
+        counted("4.2", "up-to", "all bounces up to k where exactly k are asked for", "Σ to k", vertices,
+            |[_, last]| [0, last]),
+        counted("4.3", "no-first", "the first emission skipped", "Σ from 1", emits,
+            |[first, last]| [first.max(1), last]),
+        counted("4.3", "last-only", "only the last vertex's light counted", "L_K alone", emits,
+            |[_, last]| [last, last]),
+        ended("cutoff", "stops where the throughput is small", "ends below 0.3, no compensation",
+            Way { cutoff: 0.3, ..RIGHT }),
+        ended("roulette-bare", "roulette uncompensated", "goes on with chance 4/5, nothing divided",
+            Way { coin: Some(1.0), ..RIGHT }),
+        followed(["5", "roulette-twice", "roulette compensated twice", "ρ/q² a bounce",
+            "divide by q once, where the coin falls"],
+            Way { coin: Some(1.0 / (GOES_ON * GOES_ON)), ..RIGHT }),
+    ]
+}

@@ -1,0 +1,157 @@
+//! How a path is followed, rightly or wrongly, in a room whose light is sampled on its area at every vertex,
+//! and whose other emission is found by chance.
+
+use std::f64::consts::FRAC_1_PI;
+
+use glam::DVec3;
+
+use super::mistakes::LightOfPaths;
+use crate::box_room::{BoxRoom, Face, Vertex, nearest, visible};
+use crate::hemisphere::Hemisphere;
+use crate::stream::Stream;
+
+/// What a light sample is weighed by.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seen {
+    /// cos θ at the vertex.
+    pub here: f64,
+    /// cos θ at the light.
+    pub there: f64,
+    pub r: f64,
+    /// The light's area.
+    pub area: f64,
+}
+
+/// Which point of the light is taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Spot {
+    /// A uniform one.
+    Random,
+    /// Its middle, always.
+    Middle,
+    /// A uniform one, from the random numbers that all directions of the path are made of, too.
+    Reused,
+}
+
+/// What becomes of a light sample that the cube or the horizon hides.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Hidden {
+    Dark,
+    /// The cube hides nothing.
+    Lit,
+    /// Left out: another one is drawn for it.
+    Redrawn,
+}
+
+/// How a path is followed and what is added up on it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Way {
+    /// The first and the last bounce that count, from those asked for.
+    pub counted: fn([u32; 2]) -> [u32; 2],
+    /// What stands for cos θ cos θ′ A/r² of a light sample.
+    pub sample: fn(Seen) -> f64,
+    pub spot: Spot,
+    pub hidden: Hidden,
+    /// Whether the light is found by chance.
+    pub chance: bool,
+    /// Whether every bounce but p's is a mirror's.
+    pub mirror: bool,
+    pub directions: Hemisphere,
+    /// What stands for cos θ/(π p(ω)), from cos θ.
+    pub weight: fn(f64) -> f64,
+    /// The throughput after a bounce, from the one before, the albedo there and p's.
+    pub carried: fn(f64, f64, f64) -> f64,
+    /// The albedo at a vertex where the light is sampled, from the right one and p's.
+    pub last: fn(f64, f64) -> f64,
+    /// A path whose throughput falls below this ends.
+    pub cutoff: f64,
+    /// What the throughput is multiplied by where a coin says go on, as it does with chance [`GOES_ON`].
+    pub coin: Option<f64>,
+}
+
+pub(super) const GOES_ON: f64 = 0.8;
+
+/// No light is looked for longer than this.
+pub(super) const TRIES: u32 = 4000;
+
+pub(super) const RIGHT: Way = Way {
+    counted: |asked| asked,
+    sample: |s| s.here * s.there * s.area / (s.r * s.r),
+    spot: Spot::Random,
+    hidden: Hidden::Dark,
+    chance: false,
+    mirror: false,
+    directions: Hemisphere::Cosine,
+    weight: |_| 1.0,
+    carried: |throughput, albedo, _| throughput * albedo,
+    last: |albedo, _| albedo,
+    cutoff: 0.0,
+    coin: None,
+};
+
+/// The light found by chance alone.
+pub(super) const BY_CHANCE: Way = Way { sample: |_| 0.0, chance: true, ..RIGHT };
+
+impl Way {
+    /// One draw.
+    pub fn draw(&self, p: &LightOfPaths, rng: &mut Stream) -> f64 {
+        let (room, [first, last]) = (&p.room, (self.counted)([p.first, p.last]));
+        let lit = room.scene().light_half_width > 0.0;
+        let of_p = room.albedo(&room.point());
+        let reused = if self.spot == Spot::Reused { [rng.uniform(), rng.uniform()] } else { [0.5; 2] };
+        let (mut vertex, mut throughput, mut light) = (room.point(), 1.0, 0.0);
+        let mut arrives: Option<DVec3> = None;
+        for k in 0..=last {
+            let albedo = room.albedo(&vertex);
+            if k >= first && (k == 0 || self.chance || !room.is_light(&vertex)) {
+                light += throughput * room.emitted(&vertex);
+            }
+            if k == last || albedo == 0.0 {
+                break;
+            }
+            if lit && k + 1 >= first {
+                let sampled = self.sampled(room, &vertex, reused, rng);
+                light += throughput * (self.last)(albedo, of_p) * FRAC_1_PI * sampled;
+            }
+            let [u, v] = if self.spot == Spot::Reused { reused } else { [rng.uniform(), rng.uniform()] };
+            let Ok(direction) = self.directions.direction_of(u, v) else { break };
+            throughput = (self.carried)(throughput, albedo, of_p) * (self.weight)(direction.cos_theta());
+            if throughput < self.cutoff {
+                break;
+            }
+            if let Some(weight) = self.coin {
+                if rng.uniform() >= GOES_ON {
+                    break;
+                }
+                throughput *= weight;
+            }
+            let way = match arrives {
+                Some(way) if self.mirror => way - vertex.normal() * (2.0 * way.dot(vertex.normal())),
+                _ => vertex.to_room(&direction),
+            };
+            vertex = nearest(vertex.position(), way);
+            arrives = Some(way);
+        }
+        light
+    }
+
+    /// L_e times what a sample of the light is taken for.
+    fn sampled(&self, room: &BoxRoom, vertex: &Vertex, [u, v]: [f64; 2], rng: &mut Stream) -> f64 {
+        // a point of the ceiling never sees the light
+        let tries = if self.hidden == Hidden::Redrawn && vertex.face() != Face::Ceiling { TRIES } else { 1 };
+        let (half, scene) = (room.scene().light_half_width, room.scene());
+        for _ in 0..tries {
+            let [u, v] = if self.spot == Spot::Random { [rng.uniform(), rng.uniform()] } else { [u, v] };
+            let at = DVec3::new(half * (2.0 * u - 1.0), half * (2.0 * v - 1.0), Face::ROOM_HEIGHT);
+            let way = at - vertex.position();
+            let r = way.length();
+            let seen =
+                Seen { here: vertex.normal().dot(way) / r, there: way.z / r, r, area: room.light_area() };
+            let above = seen.here > 0.0 && seen.there > 0.0;
+            if above && (self.hidden == Hidden::Lit || visible(vertex, at)) {
+                return scene.radiance * (self.sample)(seen);
+            }
+        }
+        0.0
+    }
+}

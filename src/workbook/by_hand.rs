@@ -1,0 +1,396 @@
+//! Numbers worked out by hand: what a question asks for, the wrong answers that people arrive at, and how.
+//!
+//! An answer, right or wrong, stands here as the formula that people read; its value is that formula's, at
+//! the question's parameters.
+
+use std::fmt;
+
+use super::grammar::{self, Known, Token};
+use super::{Options, Question, questions};
+use crate::error::{Error, Result};
+use crate::numbers::{rounded, shortened};
+
+/// A number that a question asks for.
+#[derive(Debug, Clone, Copy)]
+pub struct Number {
+    /// Which part of the question asks for it, "(ii)"; empty where the question asks for one number.
+    pub part: &'static str,
+    /// Its symbol.
+    pub symbol: &'static str,
+    /// What it is, in words.
+    pub what: &'static str,
+    /// The right answer for all parameters, a formula in the letters; " or " stands between several.
+    pub formula: &'static str,
+    /// The estimator c/n Σ … where it is the factor c of one: then c/n will do for an answer.
+    pub over_n: Option<&'static str>,
+    /// The letters of its formulas, and of answers to it.
+    pub letters: &'static [Letter],
+    /// The wrong answers.
+    pub slips: &'static [Slip],
+}
+
+/// A letter that stands for a number.
+#[derive(Debug, Clone, Copy)]
+pub struct Letter {
+    /// Its spellings, the worksheet's first.
+    pub names: &'static [&'static str],
+    /// Its value at the question's parameters, with the domain that the question's own module gives them.
+    pub value: fn(&Options) -> Result<f64>,
+    /// Another value, at which formulas that are not the same do not agree.
+    pub generic: f64,
+}
+
+/// A wrong answer that is a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Slip {
+    /// Its name for programs, which no other wrong answer to the same question has.
+    pub id: &'static str,
+    /// What is answered, for all parameters, as a formula; " or " stands between several.
+    pub answer: &'static str,
+    /// How it comes about.
+    pub words: &'static str,
+    /// Whether it is shown with the solution, too.
+    pub classic: bool,
+}
+
+/// One that serves to judge answers.
+pub(super) const fn slip(id: &'static str, answer: &'static str, words: &'static str) -> Slip {
+    Slip { id, answer, words, classic: false }
+}
+
+/// One that is shown with the solution, too.
+pub(super) const fn classic(id: &'static str, answer: &'static str, words: &'static str) -> Slip {
+    Slip { id, answer, words, classic: true }
+}
+
+/// What an answer worked out by hand looks like.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Judgement {
+    /// Right to the digits given.
+    Right,
+    /// Near, but with too few digits.
+    TooFewDigits {
+        /// How many significant digits would do.
+        needed: u32,
+    },
+    /// A known wrong answer, to the digits given; the nearest first.
+    LooksLike(Vec<Slip>),
+    /// Wrong, and none of the known ones.
+    Unknown {
+        /// The answer divided by the right one, where that is a number.
+        ratio: Option<f64>,
+    },
+}
+
+/// What the answer `text` to a question ("1.2", "5.1(ii)") looks like, at the sheet's parameters: right to
+/// the digits given, or one of the known slips.
+///
+/// The text is a number, a fraction, or an expression: `1.386`, `16/125`, `12.8 %`, `2 ln 2`,
+/// `x = -log(1 - 0.75)`, `2ρ/n`. What is written without a decimal point counts as exact; decimals may be
+/// rounded, or cut off, at the last digit. Letters are compared as letters: `ρ` is right where ρ is, whatever
+/// its value.
+///
+/// # Errors
+/// If the question asks for no number, or for several and not said which, or the text is not understood.
+///
+/// ```
+/// use unbiased::workbook::{Judgement, judge_answer};
+///
+/// assert_eq!(judge_answer("1.2", "1.386")?, Judgement::Right);
+/// assert_eq!(judge_answer("1.2", "0.602")?.to_string(), "looks like: the logarithm to base 10");
+/// assert_eq!(judge_answer("3.2", "ρ")?, Judgement::Right);
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+pub fn judge_answer(question: &str, text: &str) -> Result<Judgement> {
+    judge_answer_at(question, text, &Options::default(), None)
+}
+
+/// The same at the parameters that the options name, and with so many significant digits at least where
+/// `digits` are asked for: an answer that is exact has enough.
+///
+/// # Errors
+/// Those of [`judge_answer`], and where a parameter lies outside its domain, or the right answer is no
+/// number.
+///
+/// ```
+/// use unbiased::workbook::{Judgement, Options, judge_answer_at, question};
+///
+/// let mut options = Options::default();
+/// options.set(question("3.2")?, "albedo", "0.5")?;
+/// assert_eq!(judge_answer_at("3.2", "0.5", &options, None)?, Judgement::Right);
+///
+/// let sheet = Options::default();
+/// assert_eq!(judge_answer_at("1.2", "1.3", &sheet, Some(3))?, Judgement::TooFewDigits { needed: 3 });
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+pub fn judge_answer_at(
+    question: &str,
+    text: &str,
+    options: &Options,
+    digits: Option<u32>,
+) -> Result<Judgement> {
+    judged(question, text, options, digits).map(|(judgement, _)| judgement)
+}
+
+/// The same with the ratio to the right answer, where there is one.
+pub(super) fn judged(
+    question: &str,
+    text: &str,
+    options: &Options,
+    digits: Option<u32>,
+) -> Result<(Judgement, Option<f64>)> {
+    let (question, number) = asked(question)?;
+    let answer = Answered::new(question, number, text, &options.for_question(question))?;
+    let (given, letters) = answer.with_letters(1.0)?;
+    let truths = number.with_letters(number.formula, &letters)?;
+    if !truths.iter().all(|truth| truth.is_finite()) {
+        let id = question.id;
+        return Err(Error::Usage(format!(
+            "the answer to {id}{} is infinite at these parameters",
+            number.part
+        )));
+    }
+    // with letters in it the ratio is one only if it is the same whatever they stand for
+    let (elsewhere, others) = answer.with_letters(0.9)?;
+    let there = number.with_letters(number.formula, &others)?;
+    let over =
+        |given: &Known, truths: &[f64]| truths.iter().map(|truth| given.value / truth).collect::<Vec<_>>();
+    // of several right answers the one that is nearest
+    let ratios = over(&given, &truths).into_iter().zip(over(&elsewhere, &there));
+    let [here, there] = ratios
+        .min_by(|a, b| (a.0 - 1.0).abs().total_cmp(&(b.0 - 1.0).abs()))
+        .map_or([f64::INFINITY; 2], <[f64; 2]>::from);
+    let ratio = Some(here).filter(|here| here.is_finite() && same(*here, there));
+
+    let mut near = Vec::new();
+    for slip in number.slips {
+        let mut wrong = number.with_letters(slip.answer, &letters)?;
+        wrong.retain(|value| truths.iter().all(|truth| !same(*value, *truth)));
+        if let Some(off) = nearest(&given, &wrong) {
+            near.push((off, *slip));
+        }
+    }
+    near.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let nearest_slip = near.first().map_or(f64::INFINITY, |(off, _)| *off);
+    let near_right = nearest(&given, &truths);
+    let exact = truths.iter().any(|truth| same(given.value, *truth));
+    let coarse = |off: f64| !exact && too_coarse(&given, off, &truths, digits);
+    let judgement = match near_right {
+        Some(off) if coarse(off) && nearest_slip > SAME * given.value.abs() => {
+            Judgement::TooFewDigits { needed: digits.unwrap_or(2).max(1) }
+        }
+        Some(off) if exact || off <= nearest_slip => Judgement::Right,
+        _ if near.is_empty() => Judgement::Unknown { ratio },
+        _ => Judgement::LooksLike(near.into_iter().map(|(_, slip)| slip).collect()),
+    };
+    Ok((judgement, ratio))
+}
+
+/// Numbers nearer than this, relatively, are the same: they were computed in other ways.
+const SAME: f64 = 1e-9;
+
+fn same(a: f64, b: f64) -> bool {
+    a == b || (a - b).abs() <= SAME * a.abs().max(b.abs())
+}
+
+/// How far off the nearest of these values is that the number given may stand for.
+fn nearest(given: &Known, values: &[f64]) -> Option<f64> {
+    let off = values.iter().filter_map(|value| {
+        let off = value - given.value;
+        let cut_off = off < given.above;
+        (same(*value, given.value) || cut_off && off >= -given.below - SAME * value.abs())
+            .then_some(off.abs())
+    });
+    off.min_by(f64::total_cmp)
+}
+
+/// Whether a number that is `off` from the right one is known too poorly to be taken for it: to half a unit
+/// of the digits asked for, or to 5 %.
+fn too_coarse(given: &Known, off: f64, truths: &[f64], digits: Option<u32>) -> bool {
+    let truth = truths.iter().fold(0.0, |largest: f64, truth| largest.max(truth.abs()));
+    let last_digit = |digits: u32| 10f64.powf(truth.log10().floor() + 1.0 - f64::from(digits.max(1)));
+    // what rounding leaves of a 0 is one
+    let unit = digits.map_or(0.1 * truth, last_digit).max(1e-12) * (1.0 + SAME);
+    given.below.max(given.above) > unit || digits.is_some() && off > 0.5 * unit
+}
+
+/// The number that a question, or a part of one, asks for.
+pub(super) fn asked(question: &str) -> Result<(&'static Question, &'static Number)> {
+    let wanted: String = question.split_whitespace().collect();
+    let named = |question: &Question, number: &Number| format!("{}{}", question.id, number.part);
+    let all =
+        || questions().flat_map(|question| question.numbers.iter().map(move |number| (question, number)));
+    if let Some(found) = all().find(|(question, number)| named(question, number) == wanted) {
+        return Ok(found);
+    }
+    let id = wanted.split('(').next().unwrap_or_default();
+    let parts: Vec<_> = all().filter(|(question, _)| question.id == id).map(|(q, n)| named(q, n)).collect();
+    Err(Error::Usage(if parts.is_empty() {
+        let all: Vec<_> = all().map(|(question, number)| named(question, number)).collect();
+        format!("question {wanted} has no number to judge; these have: {}", all.join(", "))
+    } else {
+        format!("question {id} asks for {}: say which, not {wanted}", parts.join(", "))
+    }))
+}
+
+impl Number {
+    /// What is asked for, in words: "the factor c in c/n Σ L_i".
+    pub fn asked(&self) -> String {
+        self.over_n.map_or(self.what.into(), |sum| format!("{} in {sum}", self.what))
+    }
+
+    /// The values of one of its formulas, or of several with " or " between them, at the parameters of its
+    /// question that the options name.
+    ///
+    /// # Errors
+    /// If a parameter lies outside its domain, or the formula is none.
+    pub fn values(&self, formula: &str, options: &Options) -> Result<Vec<f64>> {
+        let letters =
+            self.letters.iter().map(|letter| (letter.value)(options)).collect::<Result<Vec<_>>>()?;
+        self.with_letters(formula, &letters)
+    }
+
+    fn with_letters(&self, formula: &str, letters: &[f64]) -> Result<Vec<f64>> {
+        let spellings: Vec<_> = self.letters.iter().map(|letter| letter.names).collect();
+        let value = |formula: &str| {
+            let known = grammar::evaluate(&grammar::read(formula, &spellings, &[])?, letters)?;
+            Some(known.value)
+        };
+        let not_understood = || Error::Usage(format!("the formula \"{formula}\" is not understood"));
+        formula.split(" or ").map(|formula| value(formula).ok_or_else(not_understood)).collect()
+    }
+}
+
+/// An answer taken apart.
+struct Answered<'a> {
+    number: &'static Number,
+    text: &'a str,
+    tokens: Vec<Token>,
+    /// The letters' values at the question's parameters.
+    letters: Vec<f64>,
+}
+
+impl<'a> Answered<'a> {
+    fn new(question: &Question, number: &'static Number, text: &'a str, options: &Options) -> Result<Self> {
+        let letters =
+            number.letters.iter().map(|letter| (letter.value)(options)).collect::<Result<Vec<_>>>()?;
+        let parameters = question.parameters.iter().map(|parameter| options.number(parameter.name).abs());
+        let exact: Vec<f64> = parameters.chain(letters.iter().copied()).collect();
+        let mut spellings: Vec<_> = number.letters.iter().map(|letter| letter.names).collect();
+        spellings.extend(number.over_n.map(|_| N));
+        let tokens = grammar::read(text, &spellings, &exact);
+        let answer = Self { number, text, tokens: tokens.unwrap_or_default(), letters };
+        // no token at all is no number, either
+        answer.with_letters(1.0).map(|_| answer)
+    }
+
+    /// The value given and what the letters stand for: those in the answer for generic numbers, times
+    /// `scale`, the others for the parameters.
+    fn with_letters(&self, scale: f64) -> Result<(Known, Vec<f64>)> {
+        let holds = |index: usize| self.tokens.contains(&Token::Letter(index));
+        let own = self.number.letters.iter().zip(&self.letters).enumerate();
+        let letters: Vec<f64> = own
+            .map(|(index, (letter, value))| if holds(index) { scale * letter.generic } else { *value })
+            .collect();
+        let at = |n: f64| grammar::evaluate(&self.tokens, &[&letters[..], &[n]].concat());
+        let n = scale * 7.3;
+        let given = at(n).ok_or_else(|| self.not_understood())?;
+        if !given.value.is_finite() || !(given.below + given.above).is_finite() {
+            let text = excerpt(self.text);
+            return Err(Error::Usage(format!("the answer \"{text}\" is not a finite number")));
+        }
+        let Some(sum) = self.number.over_n.filter(|_| holds(letters.len())) else {
+            return Ok((given, letters));
+        };
+        // c/n for c
+        let (c, elsewhere) = (n * given.value, at(2.0 * n).map(|given| 2.0 * n * given.value));
+        if !elsewhere.is_some_and(|elsewhere| same(c, elsewhere)) {
+            let text = excerpt(self.text);
+            return Err(Error::Usage(format!(
+                "the answer \"{text}\" is not a number over n: asked for is the c of {sum}"
+            )));
+        }
+        Ok((given.through(c, n), letters))
+    }
+
+    fn not_understood(&self) -> Error {
+        let letters = self.number.letters.iter().filter_map(|letter| letter.names.first().copied());
+        let letters: Vec<_> = letters.chain(self.number.over_n.map(|_| "n")).collect();
+        let letters = match &letters[..] {
+            [] => String::new(),
+            [one] => format!(", and the question's letter {one}"),
+            [all @ .., last] => format!(", and the question's letters {} and {last}", all.join(", ")),
+        };
+        let text = excerpt(self.text);
+        Error::Usage(format!(
+            "the answer \"{text}\" is not understood: numbers, fractions, + − × / ^, brackets, ln, log10, \
+             exp, √, π, e{letters} are"
+        ))
+    }
+}
+
+const N: &[&str] = &["n"];
+
+/// So much of a text as a sentence has room for, on one line.
+fn excerpt(text: &str) -> String {
+    const MOST: usize = 40;
+    let mut excerpt: String = text.chars().take(MOST).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if text.chars().nth(MOST).is_some() {
+        excerpt.push('…');
+    }
+    excerpt
+}
+
+/// The judgement in words.
+impl fmt::Display for Judgement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Right => f.write_str("right to the digits given"),
+            Self::TooFewDigits { needed: 1 } => f.write_str("too few digits: give one, rounded"),
+            Self::TooFewDigits { needed } => write!(f, "too few digits: give {needed}, rounded"),
+            Self::LooksLike(slips) => {
+                let slips: Vec<_> = slips.iter().map(|slip| slip.words).collect();
+                write!(f, "looks like: {}", slips.join("; or "))
+            }
+            Self::Unknown { ratio: Some(ratio) } => {
+                write!(f, "not right, and none of the known slips: {ratio:.4} times the answer")
+            }
+            Self::Unknown { ratio: None } => f.write_str("not right, and none of the known slips"),
+        }
+    }
+}
+
+impl Question {
+    /// Its classic wrong answers, each with the slip that leads there: those that are numbers with their
+    /// values at the question's parameters, unless they are right there.
+    pub(super) fn classic_wrong_answers(&self, options: &Options) -> Result<Vec<(String, &'static str)>> {
+        let mut all = Vec::new();
+        for number in self.numbers {
+            let truths = number.values(number.formula, options)?;
+            for slip in number.slips.iter().filter(|slip| slip.classic) {
+                let mut values = number.values(slip.answer, options)?;
+                if !values.iter().any(|value| truths.iter().any(|truth| same(*value, *truth))) {
+                    values.dedup_by(|a, b| same(*a, *b));
+                    all.push((number.equation(slip.answer, &values), slip.words));
+                }
+            }
+        }
+        all.extend(self.wrong.iter().map(|wrong| (wrong.answer.into(), wrong.slip)));
+        Ok(all)
+    }
+}
+
+impl Number {
+    /// `E[N] = 1/(1 − p_rr) = 5`
+    fn equation(&self, formula: &str, values: &[f64]) -> String {
+        let values = values
+            .iter()
+            .filter(|value| value.is_finite())
+            .map(|value| shortened(rounded(*value, 4).parse().unwrap_or(*value)).replace('-', "−"));
+        let values = values.collect::<Vec<_>>().join(" or ");
+        let value =
+            if values.is_empty() || values == formula { String::new() } else { format!(" = {values}") };
+        let place = self.over_n.map_or(String::new(), |sum| format!(" in {sum}"));
+        format!("{} = {formula}{value}{place}", self.symbol)
+    }
+}

@@ -1,0 +1,320 @@
+//! A class judged at once: numbers worked out by hand from a CSV file, and draws from a folder.
+
+use std::collections::{BTreeMap, HashMap};
+use std::fmt;
+use std::path::Path;
+
+use serde_json::json;
+
+use super::super::by_hand::{self, Judgement};
+use super::super::terminal::{folded, width};
+use super::super::{Options, Table};
+use super::draws::{self, Source};
+use super::{Verdict, exercise};
+use crate::check::{self, Finding};
+use crate::error::{Error, Result};
+
+/// What each student's answers come to, in the order of the files.
+pub struct Report {
+    rows: Vec<Row>,
+}
+
+struct Row {
+    student: String,
+    question: String,
+    /// None where the answer cannot be judged at all.
+    verdict: Option<Verdict>,
+    /// A mistake's name for programs, and for people.
+    mistake: Option<(String, String)>,
+    /// To the truth.
+    ratio: Option<f64>,
+    /// The judgement in a sentence.
+    reason: String,
+}
+
+impl Report {
+    /// Judges a CSV file with the columns student, question, answer and, if there is one, variant, and a
+    /// folder of files `STUDENT_QUESTION.txt` of draws.
+    pub fn of(
+        answers: Option<&str>,
+        draws: Option<&str>,
+        own: &[(String, String)],
+        digits: Option<u32>,
+    ) -> Result<Self> {
+        let mut rows = Vec::new();
+        if let Some(path) = answers {
+            read_answers(path, own, digits, &mut rows)?;
+        }
+        if let Some(path) = draws {
+            read_folder(Path::new(path), &mut rows)?;
+        }
+        Ok(Self { rows })
+    }
+
+    /// Undecided if anything is, else wrong if anything is.
+    pub fn verdict(&self) -> Verdict {
+        let worst = self.rows.iter().map(|row| row.verdict.unwrap_or(Verdict::Undecided));
+        worst.max().unwrap_or(Verdict::Undecided)
+    }
+
+    /// How many students made each mistake, the most frequent first: question, name for programs, name,
+    /// students.
+    fn summary(&self) -> Vec<(&str, &str, &str, usize)> {
+        let mut counts = BTreeMap::<_, usize>::new();
+        for row in &self.rows {
+            if let Some((id, name)) = &row.mistake {
+                *counts.entry((row.question.as_str(), id.as_str(), name.as_str())).or_default() += 1;
+            }
+        }
+        let mut summary: Vec<_> =
+            counts.into_iter().map(|((question, id, name), count)| (question, id, name, count)).collect();
+        summary.sort_by_key(|(question, _, _, count)| (std::cmp::Reverse(*count), *question));
+        summary
+    }
+
+    /// One object a line: the rows, then the summary.
+    pub fn json(&self) -> String {
+        let rows = self.rows.iter().map(|row| {
+            json!({
+                "student": row.student, "question": row.question, "verdict": word(row.verdict),
+                "mistake": row.mistake.as_ref().map(|(id, _)| id), "ratio": row.ratio, "reason": row.reason,
+            })
+        });
+        let summary = self.summary().into_iter().map(|(question, id, name, students)| {
+            json!({ "question": question, "mistake": id, "name": name, "students": students })
+        });
+        rows.chain(summary).map(|line| line.to_string()).collect::<Vec<_>>().join("\n")
+    }
+
+    /// The rows alone.
+    pub fn csv(&self) -> Result<String> {
+        let failed = |error: String| Error::Write { path: "the report".into(), reason: error };
+        let mut out = csv::Writer::from_writer(Vec::new());
+        let mut write =
+            |fields: [&str; 6]| out.write_record(fields).map_err(|error| failed(error.to_string()));
+        write(["student", "question", "verdict", "mistake", "ratio", "reason"])?;
+        for row in &self.rows {
+            let ratio = row.ratio.map_or(String::new(), |ratio| format!("{ratio:.6}"));
+            let mistake = row.mistake.as_ref().map_or("", |(id, _)| id);
+            write([&row.student, &row.question, word(row.verdict), mistake, &ratio, &row.reason])?;
+        }
+        let bytes = out.into_inner().map_err(|error| failed(error.to_string()))?;
+        let text = String::from_utf8(bytes).map_err(|error| failed(error.to_string()))?;
+        Ok(text.trim_end().into())
+    }
+}
+
+fn word(verdict: Option<Verdict>) -> &'static str {
+    verdict.map_or("not judged", Verdict::word)
+}
+
+/// As tables: the rows, then the summary.
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rows = self.rows.iter().map(|row| {
+            let ratio = row.ratio.map_or(String::new(), |ratio| format!("{ratio:.4}"));
+            let verdict = word(row.verdict).to_owned();
+            let mistake = match (&row.mistake, row.verdict) {
+                (Some((id, _)), _) => id.clone(),
+                (None, Some(Verdict::Right)) => String::new(),
+                (None, Some(Verdict::Wrong)) => "unknown".into(),
+                _ => String::new(),
+            };
+            vec![row.student.clone(), row.question.clone(), verdict, mistake, ratio]
+        });
+        let table = Table {
+            caption: String::new(),
+            columns: vec!["student", "question", "verdict", "mistake", "ratio"],
+            rows: rows.collect(),
+        };
+        let summary = Table {
+            caption: String::new(),
+            columns: vec!["students", "question", "mistake", ""],
+            rows: self
+                .summary()
+                .into_iter()
+                .map(|(question, id, name, count)| {
+                    vec![count.to_string(), question.into(), id.into(), name.into()]
+                })
+                .collect(),
+        };
+        let count = |verdict| self.rows.iter().filter(|row| row.verdict == verdict).count();
+        writeln!(f, "{}\n", cut(&table))?;
+        if !summary.rows.is_empty() {
+            writeln!(f, "{}\n", cut(&summary))?;
+        }
+        for row in self.rows.iter().filter(|row| matches!(row.verdict, None | Some(Verdict::Undecided))) {
+            let (student, question, verdict, reason) =
+                (&row.student, &row.question, word(row.verdict), &row.reason);
+            writeln!(f, "{}", folded(&format!("{student}, {question}: {verdict}: {reason}"), width()))?;
+        }
+        write!(
+            f,
+            "{} answers: {} right, {} wrong, {} undecided, {} not judged.",
+            self.rows.len(),
+            count(Some(Verdict::Right)),
+            count(Some(Verdict::Wrong)),
+            count(Some(Verdict::Undecided)),
+            count(None)
+        )
+    }
+}
+
+/// A table's lines, as far as they fit the terminal.
+fn cut(table: &Table) -> String {
+    let width = width();
+    let fitting = |line: String| {
+        let long = line.chars().count() > width;
+        if long { line.chars().take(width - 1).chain(['…']).collect() } else { line }
+    };
+    table.lines().into_iter().map(fitting).collect::<Vec<_>>().join("\n")
+}
+
+/// Who has answered which question, and where.
+#[derive(Default)]
+struct Given(HashMap<(String, String), String>);
+
+impl Given {
+    fn once(&mut self, student: &str, question: &str, place: String) -> Result<()> {
+        match self.0.insert((student.into(), question.into()), place.clone()) {
+            Some(before) => Err(Error::Usage(format!(
+                "{before} and {place} both answer {question} for {student}: keep one of them"
+            ))),
+            None => Ok(()),
+        }
+    }
+}
+
+fn read_answers(
+    path: &str,
+    own: &[(String, String)],
+    digits: Option<u32>,
+    rows: &mut Vec<Row>,
+) -> Result<()> {
+    let unread = |error: &dyn fmt::Display| Error::Usage(format!("{path} could not be read: {error}"));
+    let text = std::fs::read(path).map_err(|error| unread(&error))?;
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
+    // spreadsheets whose decimal sign is a comma put semicolons between the columns
+    let head = text.split(|byte| *byte == b'\n').next().unwrap_or_default();
+    let delimiter = if head.contains(&b';') && !head.contains(&b',') { b';' } else { b',' };
+    let mut reader =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).delimiter(delimiter).flexible(true).from_reader(text);
+    let headers = reader.headers().map_err(|error| unread(&error))?.clone();
+    let column = |name: &str| headers.iter().position(|header| header.eq_ignore_ascii_case(name));
+    let [mut student, mut question, mut answer] = [0; 3];
+    for (name, place) in [("student", &mut student), ("question", &mut question), ("answer", &mut answer)] {
+        let missing =
+            || Error::Usage(format!("{path} has no column {name}: it takes student, question, answer"));
+        *place = column(name).ok_or_else(missing)?;
+    }
+    let variant = column("variant");
+    let mut given = Given::default();
+    for record in reader.records() {
+        let record = record.map_err(|error| unread(&error))?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let at = |message: String| Error::Usage(format!("{path}, line {line}: {message}"));
+        let field = |place: usize, name: &str| {
+            let text = record.get(place).filter(|text| !text.is_empty());
+            text.ok_or_else(|| at(format!("there is no {name}")))
+        };
+        let (student, question) = (field(student, "student")?, field(question, "question")?);
+        given.once(student, question, format!("line {line}"))?;
+        let mut parameters: Vec<_> = own.iter().filter(|(name, _)| has(question, name)).cloned().collect();
+        for assignment in variant.and_then(|place| record.get(place)).unwrap_or("").split_whitespace() {
+            let Some((name, value)) = assignment.split_once('=') else {
+                return Err(at(format!("the variant \"{assignment}\" is not of the form name=value")));
+            };
+            parameters.push((name.into(), value.into()));
+        }
+        let parameters = super::parameters(question, &parameters).map_err(|error| at(error.to_string()))?;
+        let text = record.get(answer).unwrap_or("");
+        rows.push(judged(student, question, text, &parameters, digits));
+    }
+    Ok(())
+}
+
+/// Whether a question has this parameter.
+fn has(question: &str, name: &str) -> bool {
+    let id = question.split('(').next().unwrap_or_default();
+    super::super::question(id).is_ok_and(|question| question.parameters.iter().any(|of| of.name == name))
+}
+
+fn judged(student: &str, question: &str, text: &str, parameters: &Options, digits: Option<u32>) -> Row {
+    let row = |verdict, mistake, ratio, reason| Row {
+        student: student.into(),
+        question: question.into(),
+        verdict,
+        mistake,
+        ratio,
+        reason,
+    };
+    let (judgement, ratio) = match by_hand::judged(question, text, parameters, digits) {
+        Ok(judged) => judged,
+        Err(error) => return row(None, None, None, error.to_string()),
+    };
+    let (verdict, mistake) = match &judgement {
+        Judgement::Right => (Verdict::Right, None),
+        Judgement::TooFewDigits { .. } => (Verdict::Undecided, None),
+        Judgement::LooksLike(slips) => {
+            (Verdict::Wrong, slips.first().map(|slip| (slip.id.to_owned(), slip.words.to_owned())))
+        }
+        Judgement::Unknown { .. } => (Verdict::Wrong, None),
+    };
+    row(Some(verdict), mistake, ratio, judgement.to_string())
+}
+
+/// Draws of each student and question, in files `STUDENT_QUESTION.txt`, the lines as for `--draws-from`.
+fn read_folder(folder: &Path, rows: &mut Vec<Row>) -> Result<()> {
+    let unread =
+        |error: std::io::Error| Error::Usage(format!("{} could not be read: {error}", folder.display()));
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(unread)? {
+        let path = entry.map_err(unread)?.path();
+        if path.is_file() {
+            files.push(path);
+        }
+    }
+    files.sort();
+    let mut given = Given::default();
+    for path in files {
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let stem = name.strip_suffix(".txt").or(name.strip_suffix(".csv")).unwrap_or(&name);
+        let Some((student, question)) = stem.rsplit_once('_').filter(|(student, _)| !student.is_empty())
+        else {
+            return Err(Error::Usage(format!("{name} is not named STUDENT_QUESTION.txt")));
+        };
+        let exercise = exercise(question).map_err(|error| Error::Usage(format!("{name}: {error}")))?;
+        given.once(student, question, name.clone())?;
+        let source = Source { probe: None, file: path.display().to_string() };
+        let probes = exercise.probes_of(question);
+        let diagnosis = draws::measure(&[source], &probes).and_then(|measured| check::diagnose(&measured));
+        let (student, question) = (student.to_owned(), question.to_owned());
+        rows.push(match diagnosis {
+            Ok(diagnosis) => {
+                let first = diagnosis.candidates().next();
+                let said = diagnosis.to_string();
+                let measured = diagnosis.measurements().first();
+                Row {
+                    student,
+                    question,
+                    verdict: Some(Verdict::of(diagnosis.finding())),
+                    mistake: first.map(|candidate| (candidate.id(), candidate.name())),
+                    ratio: measured.map(|of| of.ratio().mean),
+                    reason: match (diagnosis.finding(), first) {
+                        (Finding::Known, Some(candidate)) => candidate.name(),
+                        _ => said.lines().next().unwrap_or("").into(),
+                    },
+                }
+            }
+            Err(error) => Row {
+                student,
+                question,
+                verdict: None,
+                mistake: None,
+                ratio: None,
+                reason: error.to_string(),
+            },
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,345 @@
+//! The reader's door: one's own estimator, draws of any other program, or numbers worked out by hand, judged;
+//! one's own or a class's.
+
+mod class;
+mod draws;
+mod programs;
+mod wish;
+
+use std::io::{self, Write};
+use std::panic::{self, AssertUnwindSafe};
+use std::process::ExitCode;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use serde_json::{Value, json};
+
+use super::by_hand::{self, Judgement, Slip};
+use super::progress::watched;
+use super::terminal::{folded, width};
+use super::{Options, ended, print};
+use crate::check::{
+    self, Attempt, Candidate, Diagnosis, Exercise, Finding, Measurement, Mistake, Probe, Problem,
+};
+use crate::error::{Error, Result};
+use crate::numbers::shortened;
+use crate::run::{Budget, Run, Shortfall};
+use crate::{inversion, lambertian, paths, rectangle, roulette};
+use draws::Source;
+use wish::{Deed, HELP, Wish};
+
+/// All exercises, in the order of the worksheet.
+pub fn exercises() -> [&'static Exercise; 6] {
+    [
+        inversion::mistakes::Samples::exercise(),
+        rectangle::mistakes::Integral::exercise(),
+        lambertian::mistakes::Reflection::exercise(),
+        paths::mistakes::LightOfPaths::exercise(),
+        roulette::mistakes::Wrapped::exercise(),
+        roulette::mistakes::Bounces::exercise(),
+    ]
+}
+
+/// The exercise that a worksheet question ("3.5") asks for.
+///
+/// # Errors
+/// If it asks for no estimator.
+pub fn exercise(question: &str) -> Result<&'static Exercise> {
+    let mut all = exercises().into_iter();
+    all.find(|exercise| exercise.questions().any(|of| of == question)).ok_or_else(|| {
+        let questions: Vec<_> = exercises().iter().flat_map(|exercise| exercise.questions()).collect();
+        Error::Usage(format!(
+            "question {question} has no estimator to check; these have: {}",
+            questions.join(", ")
+        ))
+    })
+}
+
+/// The `main` of an example that checks the reader's own estimators, one an exercise, for the worksheet
+/// question in hand or that of `--question`.
+///
+/// Without other options it tries the estimator on all probes of its exercise, and says what the ratios to
+/// the truth are and which classic mistakes they are consistent with. `--help` lists what else can be judged:
+/// draws of a program in any language, numbers worked out by hand, the answers of a class.
+pub fn check_mine(question: &str, mine: &[Attempt<'_>]) -> ExitCode {
+    let judged = Wish::read(question).and_then(|wish| Ok((wish.exit_code, wish.grant(mine)?)));
+    match judged {
+        Ok((true, verdict)) => ExitCode::from(verdict as u8),
+        Ok((false, _)) => ExitCode::SUCCESS,
+        Err(error) => ended(Err(error)),
+    }
+}
+
+/// What a judgement comes to; its number is the exit code of `--exit-code`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Verdict {
+    Right = 0,
+    Wrong = 1,
+    Undecided = 2,
+}
+
+impl Verdict {
+    fn of(finding: Finding) -> Self {
+        match finding {
+            Finding::NothingWrong => Self::Right,
+            Finding::Known | Finding::Unknown => Self::Wrong,
+            Finding::Unclear => Self::Undecided,
+        }
+    }
+
+    fn word(self) -> &'static str {
+        match self {
+            Self::Right => "right",
+            Self::Wrong => "wrong",
+            Self::Undecided => "undecided",
+        }
+    }
+}
+
+/// Draws on each probe where nothing else is asked for.
+const DRAWS: u64 = 1_000_000;
+
+/// What a probe may take where an error is asked for.
+const MOST_TIME: Duration = Duration::from_secs(5);
+
+impl Wish {
+    fn grant(&self, mine: &[Attempt<'_>]) -> Result<Verdict> {
+        let (said, verdict) = match &self.deed {
+            Deed::Help => (HELP.to_owned(), Verdict::Right),
+            Deed::Probes => {
+                let exercise = exercise(&self.question)?;
+                let text = if self.json { programs::probes_json } else { programs::probes };
+                (text(exercise, &self.question), Verdict::Right)
+            }
+            Deed::Template(language) => {
+                let exercise = exercise(&self.question)?;
+                (programs::template(exercise, &self.question, *language)?, Verdict::Right)
+            }
+            Deed::Answer(text) => self.judge_answer(text)?,
+            Deed::Draws(sources) => self.judge_draws(sources)?,
+            Deed::Mine => self.judge_mine(mine)?,
+            Deed::Class { answers, draws } => {
+                let report = class::Report::of(answers.as_deref(), draws.as_deref(), &self.own, self.digits)?;
+                let text = match (self.json, self.csv) {
+                    (true, _) => report.json(),
+                    (_, true) => report.csv()?,
+                    _ => report.to_string(),
+                };
+                (text, report.verdict())
+            }
+        };
+        let text = match self.deed {
+            Deed::Mine | Deed::Answer(_) | Deed::Draws(_) if !self.json => folded(&said, width()),
+            _ => said,
+        };
+        writeln!(io::stdout(), "{text}").or_else(print::until_the_pipe_closes)?;
+        Ok(verdict)
+    }
+
+    fn judge_mine(&self, mine: &[Attempt<'_>]) -> Result<(String, Verdict)> {
+        let asked = exercise(&self.question)?;
+        let Some(mine) = mine.iter().find(|attempt| std::ptr::eq(attempt.exercise(), asked)) else {
+            let (question, asked) = (&self.question, asked.name());
+            let given: Vec<_> =
+                mine.iter().map(|attempt| format!("“{}”", attempt.exercise().name())).collect();
+            return Err(Error::Usage(format!(
+                "question {question} is about “{asked}”, what is written here about {}",
+                given.join(" and ")
+            )));
+        };
+        let (measurements, shortfall) = self.measure(mine)?;
+        let draws = measurements.iter().map(|measurement| measurement.estimate.draws());
+        let draws = match (draws.clone().min(), draws.max()) {
+            (Some(fewest), Some(most)) if fewest < most => format!("{fewest} to {most}"),
+            (fewest, _) => fewest.unwrap_or_default().to_string(),
+        };
+        let cut_short = shortfall.map_or(String::new(), |shortfall| {
+            format!("Cut short: {shortfall} on a probe. Ask for a larger error, or give a time: --seconds.\n")
+        });
+        let diagnosis = check::diagnose(&measurements)?.shown_by(mine);
+        let verdict = Verdict::of(diagnosis.finding());
+        if self.json {
+            return Ok((self.diagnosis_json(&diagnosis, &[]), verdict));
+        }
+        let (question, seed) = (&self.question, self.seed);
+        Ok((
+            format!("Question {question}, {draws} draws a probe, seed {seed}.\n{cut_short}{diagnosis}"),
+            verdict,
+        ))
+    }
+
+    /// The reader's estimator on every probe, and what the probe that is the furthest from the error asked
+    /// for would have taken.
+    fn measure(&self, mine: &Attempt<'_>) -> Result<(Vec<Measurement>, Option<Shortfall>)> {
+        let (mut measurements, mut shortfall) = (Vec::new(), None::<Shortfall>);
+        for probe in mine.exercise().probes_of(&self.question) {
+            // ratios are judged, so the error asked for is theirs
+            let budget = match self.budget.unwrap_or(Budget::Draws(DRAWS)) {
+                Budget::StdError(error) => Budget::StdError(error * probe.scale()),
+                other => other,
+            };
+            let seed = check::seed_of(probe, self.seed);
+            let (measurement, outcome) = told_once(probe, || {
+                watched(!self.json, |progress| {
+                    let run = Run::new(seed).max_draws(u64::MAX).max_time(MOST_TIME).progress(progress);
+                    mine.measure(probe, &run, budget)
+                })
+            })?;
+            measurements.push(measurement);
+            let as_ratio =
+                |short: Shortfall| Shortfall { std_error: short.std_error / probe.scale(), ..short };
+            let further = |short: &Shortfall| shortfall.is_none_or(|before| short.draws > before.draws);
+            shortfall = outcome.shortfall.map(as_ratio).filter(further).or(shortfall);
+        }
+        Ok((measurements, shortfall))
+    }
+
+    fn judge_answer(&self, text: &str) -> Result<(String, Verdict)> {
+        let (_, number) = by_hand::asked(&self.question)?;
+        let parameters = parameters(&self.question, &self.own)?;
+        let (judgement, ratio) = by_hand::judged(&self.question, text, &parameters, self.digits)?;
+        let verdict = match &judgement {
+            Judgement::Right => Verdict::Right,
+            Judgement::TooFewDigits { .. } => Verdict::Undecided,
+            Judgement::LooksLike(_) | Judgement::Unknown { .. } => Verdict::Wrong,
+        };
+        if !self.json {
+            return Ok((format!("{}, {}: {judgement}", self.question, number.asked()), verdict));
+        }
+        let slips: &[Slip] = if let Judgement::LooksLike(slips) = &judgement { slips } else { &[] };
+        let slip = |slip: &Slip| json!({ "id": slip.id, "name": slip.words });
+        let line = json!({
+            "question": self.question, "answer": text, "verdict": verdict.word(), "ratio": ratio,
+            "mistakes": slips.iter().map(slip).collect::<Vec<_>>(), "reason": judgement.to_string(),
+        });
+        Ok((line.to_string(), verdict))
+    }
+
+    fn judge_draws(&self, sources: &[Source]) -> Result<(String, Verdict)> {
+        let exercise = exercise(&self.question)?;
+        let probes = exercise.probes_of(&self.question);
+        let measurements = draws::measure(sources, &probes)?;
+        let diagnosis = check::diagnose(&measurements)?;
+        let verdict = Verdict::of(diagnosis.finding());
+        let elsewhere =
+            if verdict == Verdict::Wrong { fitting_elsewhere(&measurements, &probes) } else { Vec::new() };
+        if self.json {
+            return Ok((self.diagnosis_json(&diagnosis, &elsewhere), verdict));
+        }
+        let mut text = String::new();
+        if let [only] = &measurements[..] {
+            let (draws, probe, truth) = (only.estimate.draws(), only.probe, shortened(only.probe.truth()));
+            let number = number_of(probe, &probes);
+            text +=
+                &format!("Taken as {draws} draws for probe {number}, “{probe}”, whose truth is {truth}.\n");
+        } else {
+            let each = measurements.iter().map(|of| {
+                let number = number_of(of.probe, &probes);
+                format!("{} for probe {number}", of.estimate.draws())
+            });
+            text += &format!("Draws: {}.\n", each.collect::<Vec<_>>().join(", "));
+        }
+        for (number, others) in elsewhere {
+            let others: Vec<String> =
+                others.iter().map(|(other, probe)| format!("{other}, “{probe}”")).collect();
+            text += &format!(
+                "Those for probe {number} fit the truth of probe {}: were they made for it?\n",
+                others.join("; or of ")
+            );
+        }
+        text += &diagnosis.to_string();
+        text += &format!("\n--question {} --probes describes the probes.", self.question);
+        Ok((text, verdict))
+    }
+
+    fn diagnosis_json(&self, diagnosis: &Diagnosis, elsewhere: &[Elsewhere<'_>]) -> String {
+        let probes = diagnosis.exercise().probes_of(&self.question);
+        let mistakes: Vec<Value> = diagnosis.candidates().map(candidate_json).collect();
+        let measured = diagnosis.measurements().iter().map(|of| {
+            let ratio = of.ratio();
+            let fits = elsewhere.iter().find(|(number, _)| *number == number_of(of.probe, &probes));
+            let fits: Vec<usize> = fits.map_or(Vec::new(), |(_, others)| others.iter().map(|(n, _)| *n).collect());
+            json!({
+                "probe": number_of(of.probe, &probes), "what": of.probe.to_string(), "truth": of.probe.truth(),
+                "estimate": of.estimate.mean(), "std_error": of.estimate.std_error(),
+                "draws": of.estimate.draws(), "ratio": ratio.mean, "fits_probes": fits,
+            })
+        });
+        let counterexample = diagnosis.counterexample().map(|of| {
+            let probe = number_of(of.probe, &probes);
+            json!({ "probe": probe, "numbers": of.numbers, "yours": of.yours, "right": of.right })
+        });
+        json!({
+            "question": self.question, "verdict": Verdict::of(diagnosis.finding()).word(),
+            "mistakes": mistakes, "compared": diagnosis.compared(), "counterexample": counterexample,
+            "probes": measured.collect::<Vec<_>>(), "seed": (self.deed == Deed::Mine).then_some(self.seed),
+        })
+        .to_string()
+    }
+}
+
+fn candidate_json(candidate: &Candidate) -> Value {
+    let mistake = candidate.mistake();
+    json!({
+        "id": candidate.id(), "name": candidate.name(), "factor": candidate.factor(),
+        "formula": mistake.map(Mistake::formula), "mend": mistake.map(Mistake::mend),
+    })
+}
+
+/// The question's own parameters, those given by name in place of the sheet's.
+fn parameters(question: &str, given: &[(String, String)]) -> Result<Options> {
+    let mut parameters = Options::default();
+    // one that has no number is told so where it is judged
+    let id = question.split('(').next().unwrap_or_default().trim();
+    let question = super::question(id)?;
+    for (name, value) in given {
+        parameters.set(question, name, value)?;
+    }
+    Ok(parameters)
+}
+
+fn number_of(probe: &Probe, probes: &[&Probe]) -> usize {
+    1 + probes.iter().position(|other| std::ptr::eq(*other, probe)).unwrap_or(0)
+}
+
+/// The probe that draws were given for, and the others whose truth they fit.
+type Elsewhere<'p> = (usize, Vec<(usize, &'p Probe)>);
+
+/// Draws that do not fit their probe's truth, but another's.
+fn fitting_elsewhere<'p>(measurements: &[Measurement], probes: &[&'static Probe]) -> Vec<Elsewhere<'p>> {
+    let wrong = |of: &Measurement| check::diagnose(std::slice::from_ref(of)).map(|of| of.finding());
+    let misplaced = measurements.iter().filter(|of| !matches!(wrong(of), Ok(Finding::NothingWrong)));
+    let others = misplaced.map(|of| {
+        let fits = |probe: &&&'static Probe| {
+            matches!(wrong(&Measurement { probe, ..*of }), Ok(Finding::NothingWrong))
+        };
+        let fitting = probes.iter().filter(fits).map(|probe| (number_of(probe, probes), *probe)).collect();
+        (number_of(of.probe, probes), fitting)
+    });
+    others.filter(|(_, fitting): &Elsewhere<'_>| !fitting.is_empty()).collect()
+}
+
+/// A panic in the reader's own code, told once and with the probe: it happens on many threads at once.
+pub(crate) fn told_once<T>(probe: &Probe, work: impl FnOnce() -> Result<T>) -> Result<T> {
+    let first = Arc::new(Mutex::new(None::<String>));
+    let told = Arc::clone(&first);
+    let before = panic::take_hook();
+    panic::set_hook(Box::new(move |info| {
+        let mut told = told.lock().unwrap_or_else(PoisonError::into_inner);
+        told.get_or_insert_with(|| {
+            let at = info
+                .location()
+                .map_or(String::new(), |place| format!(" ({}:{})", place.file(), place.line()));
+            let said = info.payload();
+            let said =
+                said.downcast_ref::<&str>().copied().or(said.downcast_ref::<String>().map(String::as_str));
+            format!("{}{at}", said.unwrap_or("of an unknown kind"))
+        });
+    }));
+    let worked = panic::catch_unwind(AssertUnwindSafe(work));
+    panic::set_hook(before);
+    worked.unwrap_or_else(|_| {
+        let reason = first.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default();
+        Err(Error::Panic { probe: probe.to_string(), reason })
+    })
+}

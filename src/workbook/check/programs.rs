@@ -1,0 +1,236 @@
+//! What a program in another language needs: the probes in words and numbers, and a program to begin with.
+
+use std::fmt::Write as _;
+
+use serde_json::{Map, Value, json};
+
+use crate::check::{Exercise, Given, Probe};
+use crate::error::{Error, Result};
+use crate::numbers::shortened;
+
+/// A question's probes: lines of remarks behind a #, then one line of words for each, its number first.
+pub fn probes(exercise: &Exercise, question: &str) -> String {
+    let mut text = format!("# Question {question}, {}\n", exercise.name());
+    let probes = exercise.probes_of(question);
+    let names = |probe: &&Probe| probe.given().iter().map(|(name, _)| *name).collect::<Vec<_>>().join(" ");
+    for line in exercise.draw().lines() {
+        // writing to a String cannot fail
+        let _ = writeln!(text, "# {line}");
+    }
+    let _ = writeln!(text, "# The probes:");
+    for (number, probe) in (1..).zip(&probes) {
+        let _ = writeln!(text, "#   {number}. {probe}: the truth is {}", shortened(probe.truth()));
+    }
+    let _ = writeln!(text, "# probe {}", probes.first().map(names).unwrap_or_default());
+    for (number, probe) in (1..).zip(&probes) {
+        let given: Vec<String> = probe.given().iter().map(|(_, given)| given.to_string()).collect();
+        let _ = writeln!(text, "{number} {}", given.join(" "));
+    }
+    text.trim_end().into()
+}
+
+/// The same as JSON Lines.
+pub fn probes_json(exercise: &Exercise, question: &str) -> String {
+    let line = |(number, probe): (usize, &&Probe)| {
+        let given = probe.given().iter().map(|(name, given)| {
+            let value = match given {
+                Given::Number(number) => json!(number),
+                Given::Word(word) => json!(word),
+            };
+            ((*name).to_owned(), value)
+        });
+        let given: Map<String, Value> = given.collect();
+        json!({
+            "question": question, "probe": number, "what": probe.to_string(), "draw": exercise.draw(),
+            "parameters": given, "truth": probe.truth(),
+        })
+        .to_string()
+    };
+    let lines: Vec<String> = (1..).zip(&exercise.probes_of(question)).map(line).collect();
+    lines.join("\n")
+}
+
+/// A language that there are programs in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Language {
+    Python,
+    Cpp,
+}
+
+impl Language {
+    pub fn read(name: &str) -> Result<Self> {
+        match name.to_lowercase().as_str() {
+            "python" | "py" => Ok(Self::Python),
+            "cpp" | "c++" => Ok(Self::Cpp),
+            _ => Err(Error::Usage(format!("--template is python or cpp, not \"{name}\""))),
+        }
+    }
+}
+
+/// A program that reads the question's probes and writes a probe's number and a draw a line, with a place for
+/// one's own estimator.
+pub fn template(exercise: &Exercise, question: &str, language: Language) -> Result<String> {
+    let Some(parts) = PARTS.iter().find(|parts| parts.exercise == exercise.id()) else {
+        return Err(Error::Usage(format!("question {question} has no program to begin with")));
+    };
+    let (frame, part) = match language {
+        Language::Python => (PYTHON, &parts.python),
+        Language::Cpp => (CPP, &parts.cpp),
+    };
+    let given = exercise.probes().first().map_or(&[][..], |probe| probe.given());
+    let joined = |word: &dyn Fn(usize, &str, bool) -> String, between: &str| {
+        let words =
+            (1..).zip(given).map(|(place, (name, of))| word(place, name, matches!(of, Given::Number(_))));
+        words.collect::<Vec<_>>().join(between)
+    };
+    let declared = |_: usize, name: &str, number: bool| {
+        format!("{} {name}", if number { "double" } else { "std::string" })
+    };
+    let taken = |place: usize, _: &str, number: bool| {
+        if number { format!("float(word[{place}])") } else { format!("word[{place}]") }
+    };
+    let text = frame
+        .replace("QUESTION", question)
+        .replace("HELPERS", part.helpers)
+        .replace("ESTIMATOR", part.estimator)
+        .replace("DECLARED_HERE", &joined(&declared, "; "))
+        .replace("DECLARED", &joined(&declared, ", "))
+        .replace("READ", &joined(&|_, name, _| format!(" >> {name}"), ""))
+        .replace("GIVEN", &joined(&taken, ", "))
+        .replace("NAMES", &joined(&|_, name, _| name.into(), ", "));
+    Ok(text.trim_end().into())
+}
+
+/// What differs from exercise to exercise.
+struct Parts {
+    exercise: &'static str,
+    python: Part,
+    cpp: Part,
+}
+
+struct Part {
+    helpers: &'static str,
+    /// As it stands, a classic mistake.
+    estimator: &'static str,
+}
+
+const PYTHON: &str = r##"# Question QUESTION, in Python. CHECK stands for: cargo run --release --example check_mine -- --question QUESTION
+#   CHECK --probes | python3 mine.py | CHECK --draws-from -
+import math, random, sys
+
+HELPERS
+def draw(NAMES):
+    # ---- your estimator: one draw (this one makes a classic mistake) ----
+ESTIMATOR
+    # ----------------------------------------------------------------------
+
+random.seed(1)
+for line in sys.stdin:
+    if not line.startswith("#"):
+        word = line.split()
+        for _ in range(100000):
+            print(word[0], draw(GIVEN))
+"##;
+
+const CPP: &str = r##"// Question QUESTION, in C++. CHECK stands for: cargo run --release --example check_mine -- --question QUESTION
+//   c++ -O2 -o mine mine.cpp && CHECK --probes | ./mine | CHECK --draws-from -
+#include <cmath>
+#include <iostream>
+#include <random>
+#include <sstream>
+#include <string>
+
+std::mt19937_64 generator(1);
+double uniform() { return (generator() >> 11) / 9007199254740992.0; }
+HELPERS
+double draw(DECLARED) {
+    // ---- your estimator: one draw (this one makes a classic mistake) ----
+ESTIMATOR
+    // ----------------------------------------------------------------------
+}
+
+int main() {
+    std::cout.precision(17);
+    for (std::string line; std::getline(std::cin, line);) {
+        int probe; DECLARED_HERE;
+        if (line[0] == '#' || !(std::istringstream(line) >> probeREAD)) continue;
+        for (int i = 0; i < 100000; i++) std::cout << probe << ' ' << draw(NAMES) << '\n';
+    }
+}
+"##;
+
+const PARTS: [Parts; 5] = [
+    Parts {
+        exercise: "samples",
+        python: Part {
+            helpers: r#"AVERAGE = {"x": lambda x, rate: x, "cdf": lambda x, rate: -math.expm1(-rate * max(x, 0)),
+           "capped": lambda x, rate: min(max(x, 0), 2 / rate)}
+"#,
+            estimator: "    u = random.random()\n    x = -rate * math.log(1 - u)\n    return AVERAGE[average](x, rate)",
+        },
+        cpp: Part {
+            helpers: r#"double value(std::string average, double x, double rate) {
+    if (average == "x") return x;
+    return average == "cdf" ? -std::expm1(-rate * std::fmax(x, 0)) : std::fmin(std::fmax(x, 0), 2 / rate);
+}
+"#,
+            estimator: "    double x = -rate * std::log(1 - uniform());\n    return value(average, x, rate);",
+        },
+    },
+    Parts {
+        exercise: "integral",
+        python: Part {
+            helpers: r#"F = {"one": lambda x, y: 1, "squares": lambda x, y: x * x + y * y,
+     "product": lambda x, y: x * y, "plane": lambda x, y: x + 2 * y}
+"#,
+            estimator: "    u, v = random.random(), random.random()\n    x, y = a + (b - a) * u, c + (d - c) * v\n    return (b - a) * F[f](x, y)",
+        },
+        cpp: Part {
+            helpers: r#"double value(std::string f, double x, double y) {
+    return f == "one" ? 1 : f == "squares" ? x * x + y * y : f == "product" ? x * y : x + 2 * y;
+}
+"#,
+            estimator: "    double u = uniform(), v = uniform();\n    double x = a + (b - a) * u, y = c + (d - c) * v;\n    return (b - a) * value(f, x, y);",
+        },
+    },
+    Parts {
+        exercise: "reflection",
+        python: Part {
+            helpers: r#"LIGHT = {"one": lambda x, y, z: 1, "cos": lambda x, y, z: z, "cos2": lambda x, y, z: z * z,
+         "half": lambda x, y, z: 2 if y >= 0 else 0, "lobe": lambda x, y, z: 4 if y >= 0 and z * z > 0.5 else 0,
+         "grazing": lambda x, y, z: 16 if z < 0.25 else 0}
+"#,
+            estimator: "    z, phi = 1 - random.random(), 2 * math.pi * random.random()\n    x, y = math.sqrt(1 - z * z) * math.cos(phi), math.sqrt(1 - z * z) * math.sin(phi)\n    return albedo * LIGHT[light](x, y, z)",
+        },
+        cpp: Part {
+            helpers: r#"double radiance(std::string light, double x, double y, double z) {
+    if (light == "half" || light == "lobe") return y < 0 ? 0 : light == "half" ? 2 : z * z > 0.5 ? 4 : 0;
+    return light == "one" ? 1 : light == "cos" ? z : light == "cos2" ? z * z : z < 0.25 ? 16 : 0;
+}
+"#,
+            estimator: "    double z = uniform(), r = std::sqrt(1 - z * z), phi = 2 * std::acos(-1.0) * uniform();\n    return albedo * radiance(light, r * std::cos(phi), r * std::sin(phi), z);",
+        },
+    },
+    Parts {
+        exercise: "roulette",
+        python: Part {
+            helpers: "",
+            estimator: "    x = 0.5 + random.random()\n    return x if random.random() < p_rr else 0",
+        },
+        cpp: Part {
+            helpers: "",
+            estimator: "    double x = 0.5 + uniform();\n    return uniform() < p_rr ? x : 0;",
+        },
+    },
+    Parts {
+        exercise: "bounces",
+        python: Part {
+            helpers: "",
+            estimator: "    n = 1\n    while random.random() < p_rr:\n        n += 1\n    return n",
+        },
+        cpp: Part {
+            helpers: "",
+            estimator: "    int n = 1;\n    while (uniform() < p_rr) n++;\n    return n;",
+        },
+    },
+];

@@ -1,0 +1,191 @@
+//! The command line of `check_mine`.
+
+use lexopt::{Arg, Parser};
+
+use super::super::{options, questions};
+use super::draws::Source;
+use super::programs::Language;
+use crate::error::{Error, Result};
+use crate::run::Budget;
+
+/// What is to be judged or told.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Deed {
+    Mine,
+    Help,
+    Probes,
+    Template(Language),
+    Answer(String),
+    Draws(Vec<Source>),
+    Class { answers: Option<String>, draws: Option<String> },
+}
+
+/// What the command line asks for.
+pub(super) struct Wish {
+    pub question: String,
+    pub deed: Deed,
+    pub own: Vec<(String, String)>,
+    pub digits: Option<u32>,
+    pub budget: Option<Budget>,
+    pub seed: u64,
+    pub json: bool,
+    pub csv: bool,
+    pub exit_code: bool,
+}
+
+impl Wish {
+    pub fn read(question: &str) -> Result<Self> {
+        Self::parse(Parser::from_env(), question)
+    }
+
+    fn parse(mut line: Parser, question: &str) -> Result<Self> {
+        let mut wish = Self {
+            question: question.into(),
+            deed: Deed::Mine,
+            own: Vec::new(),
+            digits: None,
+            budget: None,
+            seed: 1,
+            json: false,
+            csv: false,
+            exit_code: false,
+        };
+        let (mut probe, mut about_estimator) = (None, None);
+        let mut deeds: Vec<(&'static str, Deed)> = Vec::new();
+        while let Some(argument) = line.next().map_err(options::usage)? {
+            let name = match argument {
+                Arg::Short('h') | Arg::Long("help") => {
+                    wish.deed = Deed::Help;
+                    return Ok(wish);
+                }
+                Arg::Long(name) => name.to_owned(),
+                other => return Err(options::usage(other.unexpected())),
+            };
+            match name.as_str() {
+                "question" => wish.question = options::text(&mut line, "--question")?,
+                "json" => wish.json = true,
+                "csv" => wish.csv = true,
+                "exit-code" => wish.exit_code = true,
+                "probes" => deeds.push(("--probes", Deed::Probes)),
+                "template" => {
+                    let language = Language::read(&options::text(&mut line, "--template")?)?;
+                    deeds.push(("--template", Deed::Template(language)));
+                }
+                "answer" => deeds.push(("--answer", Deed::Answer(options::text(&mut line, "--answer")?))),
+                "digits" => wish.digits = Some(options::count(&mut line, "--digits")?.min(15) as u32),
+                "draws-from" => {
+                    let files: Vec<_> = line.values().map_err(options::usage)?.collect();
+                    let text = |file: std::ffi::OsString| file.into_string().ok();
+                    let files: Option<Vec<String>> = files.into_iter().map(text).collect();
+                    let files =
+                        files.ok_or_else(|| Error::Usage("the value of --draws-from is not text".into()))?;
+                    let sources = files.iter().map(|file| Source::read(file)).collect();
+                    deeds.push(("--draws-from", Deed::Draws(sources)));
+                }
+                "probe" => probe = Some(options::count(&mut line, "--probe")? as usize),
+                "answers" => {
+                    let answers = Some(options::text(&mut line, "--answers")?);
+                    deeds.push(("--answers", Deed::Class { answers, draws: None }));
+                }
+                "draws-in" => {
+                    let draws = Some(options::text(&mut line, "--draws-in")?);
+                    deeds.push(("--draws-in", Deed::Class { answers: None, draws }));
+                }
+                "draws" | "error" | "seconds" => {
+                    options::read_budget(&mut line, &name, &mut wish.budget)?;
+                    about_estimator = Some(format!("--{name}"));
+                }
+                "seed" => {
+                    about_estimator = Some("--seed".into());
+                    wish.seed = options::whole(&mut line, "--seed")?;
+                }
+                _ => {
+                    options::parameter(questions(), &name)?;
+                    let value = options::text(&mut line, &format!("--{name}"))?;
+                    wish.own.push((name, value));
+                }
+            }
+        }
+        wish.deed = one_of(deeds, about_estimator.as_deref())?;
+        match (&mut wish.deed, probe) {
+            (Deed::Draws(sources), Some(probe)) => match &mut sources[..] {
+                [Source { probe: unnamed @ None, .. }] => *unnamed = Some(probe),
+                _ => return Err(Error::Usage("--probe names the probe of one file of draws".into())),
+            },
+            (_, Some(_)) => {
+                return Err(Error::Usage("--probe says what the draws of --draws-from are for".into()));
+            }
+            _ => {}
+        }
+        let judged = matches!(wish.deed, Deed::Answer(_) | Deed::Class { .. });
+        if let (false, Some((name, _))) = (judged, wish.own.first()) {
+            return Err(Error::Usage(format!(
+                "--{name} is about a number worked out by hand: it goes with --answer or --answers"
+            )));
+        }
+        if wish.digits.is_some() && !judged {
+            return Err(Error::Usage("--digits goes with --answer or --answers".into()));
+        }
+        if wish.csv && (wish.json || !matches!(wish.deed, Deed::Class { .. })) {
+            return Err(Error::Usage("--csv is a form of the report on a class, and --json another".into()));
+        }
+        Ok(wish)
+    }
+}
+
+/// The one thing that is to be done; a class has answers, draws or both.
+fn one_of(deeds: Vec<(&'static str, Deed)>, about_estimator: Option<&str>) -> Result<Deed> {
+    let mut given = None::<(&'static str, Deed)>;
+    for (name, deed) in deeds {
+        given = Some(match (given, deed) {
+            (None, deed) => (name, deed),
+            // of the same option the last one counts
+            (Some((before, _)), deed) if before == name => (name, deed),
+            (Some((_, Deed::Class { answers, draws })), Deed::Class { answers: more, draws: others }) => {
+                (name, Deed::Class { answers: more.or(answers), draws: others.or(draws) })
+            }
+            (Some((before, _)), _) => {
+                return Err(Error::Usage(format!("{before} has no use for {name}: give one of them")));
+            }
+        });
+    }
+    match (given, about_estimator) {
+        (Some((name, _)), Some(other)) => {
+            Err(Error::Usage(format!("{name} has no use for {other}: give one of them")))
+        }
+        (given, _) => Ok(given.map_or(Deed::Mine, |(_, deed)| deed)),
+    }
+}
+
+pub(super) const HELP: &str =
+    "Checks your own estimator, written in examples/check_mine.rs, or numbers worked out by hand.
+
+    cargo run --release --example check_mine
+    cargo run --release --example check_mine -- --question 1.2 --answer 0.602
+
+A program in another language reads the question's probes, and writes a probe's number and a draw a
+line (CHECK stands for cargo run --release --example check_mine -- --question 3.5):
+
+    CHECK --template python > mine.py
+    CHECK --probes | python3 mine.py | CHECK --draws-from -
+
+Options
+    --question Q         the worksheet's number (default: the one in the file)
+    --draws N            draws of your estimator on each probe (1000000)
+    --error E            instead: draws until the ratio to the truth has the std error E, by a pilot
+                         run: never fewer than the pilot's, and about 5 s of them a probe at most
+    --seconds S          instead: draws for S seconds a probe
+    --seed S             their seed (1)
+    --answer TEXT        judge this number, fraction or expression: 1.386, 16/125, 2ρ/π
+    --digits N           with so many significant digits at least
+    --albedo X, …        the question's own parameters, as in its example
+    --probes             describe the question's probes, for people and programs
+    --template LANG      a program to begin with: python or cpp
+    --draws-from FILE    judge these draws (- for standard input), one a line, or a probe's number
+                         and a draw a line; or several files: 1=a.txt 2=b.txt
+    --probe N            which probe the draws of one file are for (1)
+    --answers FILE       judge a class: CSV with the columns student, question, answer
+    --draws-in FOLDER    and their draws, in files STUDENT_QUESTION.txt
+    --csv                the report on a class as CSV
+    --json               JSON, one object a line
+    --exit-code          exit with 0 for right, 1 for wrong, 2 for undecided";
