@@ -34,6 +34,25 @@ pub(crate) fn shortened(value: f64) -> String {
     }
 }
 
+/// Seven significant digits at most, for a sentence: 1.386294, 2·10⁻⁹, −3, ∞.
+#[cfg(feature = "workbook")]
+pub(crate) fn in_a_text(value: f64) -> String {
+    if !value.is_finite() {
+        return if value > 0.0 { "∞" } else { "no number" }.into();
+    }
+    let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(value);
+    let size = rounded.abs();
+    let text = if size == 0.0 || (1e-4..1e7).contains(&size) {
+        format!("{}", rounded + 0.0)
+    } else {
+        let scientific = format!("{rounded:e}");
+        let (digits, power) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+        let raised = power.chars().filter_map(|c| "⁻⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth("-0123456789".find(c)?));
+        format!("{digits}·10{}", raised.collect::<String>())
+    };
+    text.replace('-', "−")
+}
+
 /// A number to so many digits, trailing zeros left out: 1.2e9.
 pub(crate) fn rounded(value: f64, digits: usize) -> String {
     if value == 0.0 {
@@ -97,6 +116,22 @@ mod tests {
             (1.0, f64::INFINITY, "1 ± ∞"),
         ] {
             assert_eq!(plus_minus(mean, reach), text);
+        }
+    }
+
+    #[cfg(feature = "workbook")]
+    #[test]
+    fn a_sentence_has_short_numbers() {
+        for (value, text) in [
+            (4f64.ln(), "1.386294"),
+            (0.1 + 0.2, "0.3"),
+            (-3.0, "−3"),
+            (-0.0, "0"),
+            (2e-9, "2·10⁻⁹"),
+            (-1.25e12, "−1.25·10¹²"),
+            (f64::INFINITY, "∞"),
+        ] {
+            assert_eq!(in_a_text(value), text);
         }
     }
 }

@@ -65,7 +65,7 @@ fn every_slip_is_found_again_at_any_parameters() {
         let mut rng = Stream::new(common::seed(11), 0);
         for _ in 0..200 {
             let options = at(question, &random_parameters(question, &mut rng));
-            let values = |formula: &str| number.values(formula, &options).unwrap();
+            let values = |formula: &str| question.evaluate(formula, &options).unwrap();
             let judge = |value: f64| judge_answer_at(&name, &format!("{value:.12}"), &options, None).unwrap();
             let truths = values(number.formula);
             for truth in &truths {
@@ -116,7 +116,7 @@ fn truths_are_those_of_independent_closed_forms() {
             ("5.1", "(iii)") | ("5.2", "") => expected(),
             other => panic!("{other:?} has no truth here"),
         };
-        let found = number.values(number.formula, &options).unwrap()[0];
+        let found = question.evaluate(number.formula, &options).unwrap()[0];
         assert!(
             (found - truth).abs() <= 1e-12 * truth,
             "{}{}: {found} for {truth}",
@@ -128,7 +128,7 @@ fn truths_are_those_of_independent_closed_forms() {
         [("1.2", 1.386294), ("2.1", 16.0), ("5.1(ii)", 0.128), ("5.1(iii)", 4.0), ("5.2", 0.25)]
     {
         let (question, number) = number(name);
-        let found = number.values(number.formula, &at(question, &[])).unwrap();
+        let found = question.evaluate(number.formula, &at(question, &[])).unwrap();
         assert!((found[0] - truth).abs() < 1e-6, "{name}: {found:?}");
     }
 }
@@ -342,7 +342,7 @@ fn what_is_no_answer_is_an_error() {
             "3.5",
             "ρ/n Σ L_i",
             "the answer \"ρ/n Σ L_i\" is not understood: numbers, fractions, + − × / ^, brackets, ln, log10, \
-             exp, √, π, e, and the question's letters ρ and n are",
+             exp, √, π, e, and the question's letters ρ, L_i, a and n are",
         ),
         ("2.1", "16 n", "the answer \"16 n\" is not a number over n: asked for is the c of c/n Σ f(Xᵢ, Yᵢ)"),
         ("1.2", "1/0", "the answer \"1/0\" is not a finite number"),

@@ -9,6 +9,8 @@ use std::process::{Command, Output};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use unbiased::workbook::Options;
+
 use serde_json::Value;
 
 const KEYS: [&str; 11] = [
@@ -266,13 +268,13 @@ fn the_student_edition_contains_no_answer() {
     let (_, solved) = worksheet();
     for (place, text) in &texts {
         for question in unbiased::workbook::questions() {
-            let slips = question.numbers.iter().flat_map(|number| number.slips).map(|slip| slip.words);
-            let wrong = question.wrong.iter().map(|wrong| wrong.slip).chain(slips);
+            let stated = question.at(&Options::default()).unwrap();
+            let wrong = stated.wrong.into_iter().map(|(_, slip)| slip);
             let secrets =
-                [question.formula, question.answer].into_iter().chain(question.on_the_original).chain(wrong);
+                [stated.formula, stated.answer].into_iter().chain(stated.on_the_original).chain(wrong);
             for secret in secrets {
                 assert!(
-                    !letters(text).contains(&letters(secret)),
+                    !letters(text).contains(&letters(&secret)),
                     "{}: the {place} says {secret:?}",
                     question.id
                 );
@@ -371,7 +373,14 @@ fn bad_input_gets_one_sentence_an_exit_code_and_leaves_nothing_behind() {
         ("q2_1_square", &["--n", "2.5"], 2, "--n takes a whole number, not 2.5"),
         ("q3_2_uniform_sky", &["--albedo", "1.1"], 2, "albedo"),
         ("q3_2_uniform_sky", &["--albedo=-0.1"], 2, "albedo"),
-        ("q3_4_brdf_directions", &["--radiance", "nan"], 1, "an estimate needs finite draws"),
+        (
+            "q3_4_brdf_directions",
+            &["--radiance", "nan"],
+            2,
+            "question 3.4: the radiance must be finite, not NaN",
+        ),
+        ("worksheet", &["--5.2.p-rr", "0"], 2, "question 5.2: "),
+        ("worksheet", &["--1.1.p-rr", "0.5"], 2, "there is no option --1.1.p-rr"),
         ("q3_5_cosine_directions", &["--a=-2"], 2, "the exponent a must be above -2"),
         ("q3_6_variance", &["--width", "0"], 2, "width"),
         ("q5_1_bounces", &["--p-rr", "0"], 2, "p_rr"),
@@ -431,7 +440,9 @@ fn a_folder_that_cannot_be_written_is_one_sentence() {
 
 #[test]
 fn help_lists_every_option() {
-    for (example, own) in [("q1_2_one_sample", &["--rate", "--u"][..]), ("worksheet", &["--rate", "--u"])] {
+    for (example, own) in
+        [("q1_2_one_sample", &["--rate", "--u"][..]), ("worksheet", &["--1.1.rate", "--1.2.u"])]
+    {
         for flag in ["--help", "-h"] {
             let output = run(example, &[flag]);
             let text = String::from_utf8(output.stdout).unwrap();
@@ -550,10 +561,11 @@ fn too_few_draws_are_not_judged() {
 #[test]
 fn every_example_has_a_hint_that_does_not_tell() {
     for question in unbiased::workbook::questions() {
+        let stated = question.at(&Options::default()).unwrap();
         let output = run(question.example, &["--hint"]);
         let text = String::from_utf8(output.stdout).unwrap();
-        assert!(output.status.success() && text.trim() == format!("{}  {}", question.id, question.hint));
-        assert!(!letters(&text).contains(&letters(question.formula)), "{}", question.id);
+        assert!(output.status.success() && text.trim() == format!("{}  {}", question.id, stated.hint));
+        assert!(!letters(&text).contains(&letters(&stated.formula)), "{}", question.id);
     }
     let all = String::from_utf8(run("worksheet", &["--hint"]).stdout).unwrap();
     assert_eq!(all.lines().count(), unbiased::workbook::questions().count());

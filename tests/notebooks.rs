@@ -372,13 +372,14 @@ fn the_notebooks_have_their_parts() {
         }
         // the questions in the workbook's words, and the way to the worked answers
         for question in workbook::questions().filter(|question| question.id.starts_with(notebook.section)) {
+            let stated = question.at(&workbook::Options::default()).unwrap();
             assert!(
-                prose.contains(&format!("## {} {}\n", question.id, question.title)),
+                prose.contains(&format!("## {} {}\n", question.id, stated.title)),
                 "{name}: {}",
                 question.id
             );
-            assert!(prose.contains(question.statement), "{name}: the statement of {}", question.id);
-            if let Some(note) = question.on_the_original {
+            assert!(prose.contains(&stated.statement), "{name}: the statement of {}", question.id);
+            if let Some(note) = &stated.on_the_original {
                 assert!(prose.contains(note), "{name}: the note on {}", question.id);
             }
             assert!(
@@ -427,8 +428,9 @@ fn every_number_in_prose_is_produced_by_a_cell() {
         }
         let questions: Vec<_> = workbook::questions().collect();
         for question in &questions {
-            known += question.statement;
-            known += question.on_the_original.unwrap_or_default();
+            let stated = question.at(&workbook::Options::default()).unwrap();
+            known += &stated.statement;
+            known += &stated.on_the_original.unwrap_or_default();
         }
         let known: BTreeSet<&str> = numbers(&known).collect();
         for number in numbers(&prose(&notebook)) {

@@ -23,21 +23,8 @@ pub struct Number {
     pub formula: &'static str,
     /// The estimator c/n Σ … where it is the factor c of one: then c/n will do for an answer.
     pub over_n: Option<&'static str>,
-    /// The letters of its formulas, and of answers to it.
-    pub letters: &'static [Letter],
     /// The wrong answers.
     pub slips: &'static [Slip],
-}
-
-/// A letter that stands for a number.
-#[derive(Debug, Clone, Copy)]
-pub struct Letter {
-    /// Its spellings, the worksheet's first.
-    pub names: &'static [&'static str],
-    /// Its value at the question's parameters, with the domain that the question's own module gives them.
-    pub value: fn(&Options) -> Result<f64>,
-    /// Another value, at which formulas that are not the same do not agree.
-    pub generic: f64,
 }
 
 /// A wrong answer that is a number.
@@ -142,7 +129,7 @@ pub(super) fn judged(
     let (question, number) = asked(question)?;
     let answer = Answered::new(question, number, text, &options.for_question(question))?;
     let (given, letters) = answer.with_letters(1.0)?;
-    let truths = number.with_letters(number.formula, &letters)?;
+    let truths = question.with_letters(number.formula, &letters)?;
     if !truths.iter().all(|truth| truth.is_finite()) {
         let id = question.id;
         return Err(Error::Usage(format!(
@@ -152,7 +139,7 @@ pub(super) fn judged(
     }
     // with letters in it the ratio is one only if it is the same whatever they stand for
     let (elsewhere, others) = answer.with_letters(0.9)?;
-    let there = number.with_letters(number.formula, &others)?;
+    let there = question.with_letters(number.formula, &others)?;
     let over =
         |given: &Known, truths: &[f64]| truths.iter().map(|truth| given.value / truth).collect::<Vec<_>>();
     // of several right answers the one that is nearest
@@ -164,7 +151,7 @@ pub(super) fn judged(
 
     let mut near = Vec::new();
     for slip in number.slips {
-        let mut wrong = number.with_letters(slip.answer, &letters)?;
+        let mut wrong = question.with_letters(slip.answer, &letters)?;
         wrong.retain(|value| truths.iter().all(|truth| !same(*value, *truth)));
         if let Some(off) = nearest(&given, &wrong) {
             near.push((off, *slip));
@@ -238,31 +225,27 @@ impl Number {
     pub fn asked(&self) -> String {
         self.over_n.map_or(self.what.into(), |sum| format!("{} in {sum}", self.what))
     }
+}
 
-    /// The values of one of its formulas, or of several with " or " between them, at the parameters of its
-    /// question that the options name.
+impl Question {
+    /// The values of a formula in its letters, or of several with " or " between them, at the parameters that
+    /// the options name.
     ///
     /// # Errors
     /// If a parameter lies outside its domain, or the formula is none.
-    pub fn values(&self, formula: &str, options: &Options) -> Result<Vec<f64>> {
-        let letters =
-            self.letters.iter().map(|letter| (letter.value)(options)).collect::<Result<Vec<_>>>()?;
-        self.with_letters(formula, &letters)
+    pub fn evaluate(&'static self, formula: &str, options: &Options) -> Result<Vec<f64>> {
+        let options = options.for_question(self);
+        self.with_letters(formula, &self.values(&options)?)
     }
 
     fn with_letters(&self, formula: &str, letters: &[f64]) -> Result<Vec<f64>> {
-        let spellings: Vec<_> = self.letters.iter().map(|letter| letter.names).collect();
-        let value = |formula: &str| {
-            let known = grammar::evaluate(&grammar::read(formula, &spellings, &[])?, letters)?;
-            Some(known.value)
-        };
-        let not_understood = || Error::Usage(format!("the formula \"{formula}\" is not understood"));
-        formula.split(" or ").map(|formula| value(formula).ok_or_else(not_understood)).collect()
+        formula.split(" or ").map(|formula| self.value(formula, letters)).collect()
     }
 }
 
 /// An answer taken apart.
 struct Answered<'a> {
+    question: &'static Question,
     number: &'static Number,
     text: &'a str,
     tokens: Vec<Token>,
@@ -271,15 +254,19 @@ struct Answered<'a> {
 }
 
 impl<'a> Answered<'a> {
-    fn new(question: &Question, number: &'static Number, text: &'a str, options: &Options) -> Result<Self> {
-        let letters =
-            number.letters.iter().map(|letter| (letter.value)(options)).collect::<Result<Vec<_>>>()?;
+    fn new(
+        question: &'static Question,
+        number: &'static Number,
+        text: &'a str,
+        options: &Options,
+    ) -> Result<Self> {
+        let letters = question.values(options)?;
         let parameters = question.parameters.iter().map(|parameter| options.number(parameter.name).abs());
         let exact: Vec<f64> = parameters.chain(letters.iter().copied()).collect();
-        let mut spellings: Vec<_> = number.letters.iter().map(|letter| letter.names).collect();
+        let mut spellings: Vec<_> = question.letters().map(|letter| letter.names).collect();
         spellings.extend(number.over_n.map(|_| N));
         let tokens = grammar::read(text, &spellings, &exact);
-        let answer = Self { number, text, tokens: tokens.unwrap_or_default(), letters };
+        let answer = Self { question, number, text, tokens: tokens.unwrap_or_default(), letters };
         // no token at all is no number, either
         answer.with_letters(1.0).map(|_| answer)
     }
@@ -288,7 +275,7 @@ impl<'a> Answered<'a> {
     /// `scale`, the others for the parameters.
     fn with_letters(&self, scale: f64) -> Result<(Known, Vec<f64>)> {
         let holds = |index: usize| self.tokens.contains(&Token::Letter(index));
-        let own = self.number.letters.iter().zip(&self.letters).enumerate();
+        let own = self.question.letters().zip(&self.letters).enumerate();
         let letters: Vec<f64> = own
             .map(|(index, (letter, value))| if holds(index) { scale * letter.generic } else { *value })
             .collect();
@@ -314,7 +301,7 @@ impl<'a> Answered<'a> {
     }
 
     fn not_understood(&self) -> Error {
-        let letters = self.number.letters.iter().filter_map(|letter| letter.names.first().copied());
+        let letters = self.question.letters().filter_map(|letter| letter.names.first().copied());
         let letters: Vec<_> = letters.chain(self.number.over_n.map(|_| "n")).collect();
         let letters = match &letters[..] {
             [] => String::new(),
@@ -363,12 +350,15 @@ impl fmt::Display for Judgement {
 impl Question {
     /// Its classic wrong answers, each with the slip that leads there: those that are numbers with their
     /// values at the question's parameters, unless they are right there.
-    pub(super) fn classic_wrong_answers(&self, options: &Options) -> Result<Vec<(String, &'static str)>> {
+    pub(super) fn classic_wrong_answers(
+        &'static self,
+        options: &Options,
+    ) -> Result<Vec<(String, &'static str)>> {
         let mut all = Vec::new();
         for number in self.numbers {
-            let truths = number.values(number.formula, options)?;
+            let truths = self.evaluate(number.formula, options)?;
             for slip in number.slips.iter().filter(|slip| slip.classic) {
-                let mut values = number.values(slip.answer, options)?;
+                let mut values = self.evaluate(slip.answer, options)?;
                 if !values.iter().any(|value| truths.iter().any(|truth| same(*value, *truth))) {
                     values.dedup_by(|a, b| same(*a, *b));
                     all.push((number.equation(slip.answer, &values), slip.words));

@@ -32,6 +32,7 @@ mod section3;
 mod section4;
 mod section5;
 mod shards;
+mod stated;
 mod terminal;
 mod value;
 
@@ -40,11 +41,12 @@ use std::time::Duration;
 
 pub use answer::{Answer, Kind};
 pub use appendix::{Appendix, Table};
-pub use by_hand::{Judgement, Letter, Number, Slip, judge_answer, judge_answer_at};
+pub use by_hand::{Judgement, Number, Slip, judge_answer, judge_answer_at};
 #[cfg(feature = "notebook")]
 pub(crate) use check::told_once;
 pub use check::{check_mine, exercise, exercises};
 pub use options::Options;
+pub use stated::{Letter, Stated};
 pub use value::Value;
 
 use crate::error::{Error, Result};
@@ -56,7 +58,8 @@ use options::{Asked, Request};
 
 /// One question of the worksheet, with all that is known about it before anything is run.
 ///
-/// Texts are plain; `latex` is LaTeX, shown on the page.
+/// Texts are plain; `latex` is LaTeX, shown on the page. What stands between « and » in them is a formula in the question's letters,
+/// as answers are written: [`at`](Self::at) puts its value at the parameters there.
 #[derive(Debug, Clone, Copy)]
 pub struct Question {
     /// The worksheet's number.
@@ -85,6 +88,8 @@ pub struct Question {
     pub module: &'static str,
     /// Its own options.
     pub parameters: &'static [Parameter],
+    /// Letters of its formulas that follow from these.
+    pub derived: &'static [Letter],
 }
 
 /// A classic wrong answer that is no number.
@@ -105,6 +110,8 @@ pub struct Parameter {
     pub default: Value,
     /// What it is, with its domain.
     pub help: &'static str,
+    /// What it is called in formulas, if it is a number.
+    pub letter: Option<Letter>,
 }
 
 /// All questions, in the worksheet's order.
@@ -139,6 +146,8 @@ pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
         let asked = Asked::Questions(&questions);
         let Some(options) = Request::read(asked)?.options(asked)? else { return Ok(()) };
         let options = options.for_question(question);
+        // a parameter outside its domain is told before anything is run
+        question.at(&options)?;
         let answer = || {
             let answers = answer(&options)?;
             if let Some(shards) = &options.shards {
@@ -172,6 +181,9 @@ pub fn worksheet(answers: &[(&str, AnswerFn)], appendices: &[(&str, AppendixFn)]
         let questions: Vec<_> = asked.iter().map(|(question, _)| *question).collect();
         let all = Asked::Questions(&questions);
         let Some(options) = Request::read(all)?.options(all)? else { return Ok(()) };
+        for question in &questions {
+            question.at(&options)?;
+        }
         options.with_out(|| {
             let mut answered = Vec::new();
             for (question, answer) in &asked {

@@ -38,7 +38,7 @@ pub struct Options {
     pub shard: Option<[u64; 2]>,
     /// The shards of which every run is put together instead.
     pub(super) shards: Option<Rc<Shards>>,
-    given: Vec<(String, Value)>,
+    given: Vec<Given>,
     question: Option<&'static Question>,
 }
 
@@ -59,6 +59,15 @@ impl Default for Options {
     }
 }
 
+/// A question's own option, as given.
+#[derive(Debug, Clone)]
+struct Given {
+    /// The question, if the option names it: `--5.2.p-rr`. Else it is that of every question that has it.
+    of: Option<String>,
+    name: &'static str,
+    value: Value,
+}
+
 /// Whose command line it is.
 #[derive(Clone, Copy)]
 pub(super) enum Asked<'q> {
@@ -71,7 +80,7 @@ pub(super) enum Asked<'q> {
 /// What the command line asks for.
 pub(super) enum Request {
     Help,
-    Hint,
+    Hint(Options),
     Run(Options),
 }
 
@@ -82,7 +91,9 @@ impl Request {
             (Self::Run(options), _) => Ok(Some(options)),
             (Self::Help, Asked::Questions(questions)) => print::help(questions).map(|()| None),
             (_, Asked::Beside(beside)) => print::help_beside(beside).map(|()| None),
-            (Self::Hint, Asked::Questions(questions)) => print::hints(questions).map(|()| None),
+            (Self::Hint(options), Asked::Questions(questions)) => {
+                print::hints(questions, &options).map(|()| None)
+            }
         }
     }
 
@@ -92,7 +103,7 @@ impl Request {
     }
 
     pub fn parse(mut line: Parser, asked: Asked<'_>) -> Result<Self> {
-        let mut options = Options::default();
+        let (mut options, mut hint) = (Options::default(), false);
         let questions = match asked {
             Asked::Questions(questions) => questions,
             Asked::Beside(_) => &[],
@@ -108,7 +119,7 @@ impl Request {
             }
             match name.as_str() {
                 "help" => return Ok(Self::Help),
-                "hint" => return Ok(Self::Hint),
+                "hint" => hint = true,
                 "json" => options.json = true,
                 "draws" | "error" | "seconds" => read_budget(&mut line, &name, &mut options.budget)?,
                 "seed" => options.seed = whole(&mut line, "--seed")?,
@@ -121,11 +132,19 @@ impl Request {
                 }
                 "edition" => options.edition = edition(&text(&mut line, "--edition")?)?,
                 _ => {
-                    let parameter = parameter(questions.iter().copied(), &name)?;
+                    let (of, own) = match name.rsplit_once('.') {
+                        Some((id, own)) => (Some(id), own),
+                        None => (None, name.as_str()),
+                    };
+                    let asked = questions.iter().copied().filter(|asked| of.is_none_or(|id| asked.id == id));
+                    let parameter = parameter(asked, own, &name)?;
                     let value = parameter.read(&text(&mut line, &format!("--{name}"))?)?;
-                    options.given.push((name, value));
+                    options.given.push(Given { of: of.map(str::to_owned), name: parameter.name, value });
                 }
             }
+        }
+        if hint {
+            return Ok(Self::Hint(options));
         }
         let cut = options.shard.is_some();
         if cut && options.shards.is_some() {
@@ -145,9 +164,10 @@ impl Request {
 pub(super) fn parameter(
     questions: impl IntoIterator<Item = &'static Question>,
     name: &str,
+    option: &str,
 ) -> Result<&'static Parameter> {
     let mut known = questions.into_iter().flat_map(|question| question.parameters);
-    let unknown = || Error::Usage(format!("there is no option --{name}; --help lists them"));
+    let unknown = || Error::Usage(format!("there is no option --{option}; --help lists them"));
     known.find(|parameter| parameter.name == name).ok_or_else(unknown)
 }
 
@@ -241,17 +261,20 @@ impl Options {
     /// # Errors
     /// If the question has no such option, or it does not take that.
     pub fn set(&mut self, question: &'static Question, name: &str, given: &str) -> Result<()> {
-        let value = parameter([question], name)?.read(given)?;
-        self.given.push((name.into(), value));
+        let parameter = parameter([question], name, name)?;
+        let given = Given { of: None, name: parameter.name, value: parameter.read(given)? };
+        self.given.push(given);
         Ok(())
     }
 
     /// The value of the question's own option `name`: as given, or its default.
     fn value(&self, name: &str) -> Option<Value> {
-        let given = self.given.iter().rev().find(|(given, _)| given == name);
+        let id = self.question.map(|question| question.id);
+        let own = |given: &&Given| given.name == name && given.of.as_deref().is_none_or(|of| Some(of) == id);
+        let given = self.given.iter().rev().find(own);
         let parameters = self.question.map_or(&[][..], |question| question.parameters);
         let default = || parameters.iter().find(|parameter| parameter.name == name);
-        given.map(|(_, value)| *value).or_else(|| default().map(|parameter| parameter.default))
+        given.map(|given| given.value).or_else(|| default().map(|parameter| parameter.default))
     }
 
     /// The number of the question's own option `name`: as given, or its default. NaN if the question has no such option.

@@ -83,19 +83,18 @@ fn section_heading(answered: &[(&'static Question, Vec<Answer>)], index: usize) 
 fn article(question: &'static Question, answers: &[Answer], options: &Options) -> Result<Markup> {
     let options = options.for_question(question);
     let edition = options.edition;
-    let formulas = question.latex.iter().map(|latex| mathml(latex)).collect::<Result<Vec<_>>>()?;
+    let stated = question.at(&options)?;
+    let formulas = stated.latex.iter().map(|latex| mathml(latex)).collect::<Result<Vec<_>>>()?;
     let answers: Vec<&Answer> = answers.iter().filter(|answer| shown(answer, edition)).collect();
     let figures = answers.iter().flat_map(|answer| answer.figures(edition));
-    let wrong =
-        if edition == Edition::Solution { question.classic_wrong_answers(&options)? } else { Vec::new() };
     let (command, remark) = options.command(question, answers.iter().copied());
     Ok(html! {
         article id={ "q" (question.id) } {
-            h3 { (question.id) " " (prose(question.title)) }
-            p.statement { (prose(question.statement)) }
+            h3 { (question.id) " " (prose(&stated.title)) }
+            p.statement { (prose(&stated.statement)) }
             @if edition == Edition::Solution {
                 @for formula in &formulas { div.formula { (PreEscaped(formula)) } }
-                p { (prose(question.answer)) }
+                p { (prose(&stated.answer)) }
                 @if answers.iter().any(|answer| answer.found().is_some() || answer.exact().is_some()) {
                     (numbers(&answers, &options))
                 }
@@ -112,13 +111,13 @@ fn article(question: &'static Question, answers: &[Answer], options: &Options) -
             @if edition == Edition::Student {
                 div.space {}
             } @else {
-                @if !wrong.is_empty() {
+                @if !stated.wrong.is_empty() {
                     h4 { "Classic wrong answers" }
                     dl {
-                        @for (answer, slip) in &wrong { dt { (prose(answer)) } dd { (prose(slip)) } }
+                        @for (answer, slip) in &stated.wrong { dt { (prose(answer)) } dd { (prose(slip)) } }
                     }
                 }
-                @if let Some(note) = question.on_the_original {
+                @if let Some(note) = &stated.on_the_original {
                     aside { strong { "On the original sheet. " } (prose(note)) }
                 }
                 p.command { code { (command) } @if let Some(remark) = remark { " " (remark) } }
@@ -285,7 +284,7 @@ mod tests {
     #[test]
     fn every_formula_becomes_mathml() {
         for question in crate::workbook::questions() {
-            for latex in question.latex {
+            for latex in &question.at(&Options::default()).unwrap().latex {
                 assert!(mathml(latex).is_ok_and(|math| math.starts_with("<math")), "{latex}");
             }
         }

@@ -7,17 +7,18 @@ use serde::Serialize;
 
 use super::answer::parameters_of;
 use super::appendix::Beside;
-use super::{Answer, Appendix, Kind, Options, Question, shown};
+use super::{Answer, Appendix, Kind, Options, Question, Stated, shown};
 use crate::error::{Error, Result};
 use crate::figure::Edition;
 use crate::numbers::{plus_minus, rounded, shortened};
 use crate::run::Part;
 
 /// Prints the answers to one question and saves their figures.
-pub(super) fn answers(question: &Question, answers: &[Answer], options: &Options) -> Result<()> {
+pub(super) fn answers(question: &'static Question, answers: &[Answer], options: &Options) -> Result<()> {
+    let stated = question.at(options)?;
     if options.shard.is_some() {
         let mut shards = answers.iter().filter(|answer| answer.part().is_some());
-        let printed = shards.try_for_each(|answer| json(question, answer, &[], options));
+        let printed = shards.try_for_each(|answer| json(&stated, answer, &[], options));
         return printed.or_else(until_the_pipe_closes);
     }
     let mut rows = Vec::new();
@@ -32,13 +33,9 @@ pub(super) fn answers(question: &Question, answers: &[Answer], options: &Options
         }
     }
     let printed = if options.json {
-        rows.iter().try_for_each(|(answer, paths)| json(question, answer, paths, options))
+        rows.iter().try_for_each(|(answer, paths)| json(&stated, answer, paths, options))
     } else {
-        let wrong = match options.edition {
-            Edition::Solution => question.classic_wrong_answers(options)?,
-            Edition::Student => Vec::new(),
-        };
-        text(question, &rows, &wrong, options)
+        text(question, &stated, &rows, options)
     };
     printed.or_else(until_the_pipe_closes)
 }
@@ -136,9 +133,9 @@ impl<'a> Row<'a> {
     }
 
     /// Nothing of the answer, and a name that does not tell it.
-    fn untold(self, question: &'a Question) -> Self {
+    fn untold(self, stated: &'a Stated) -> Self {
         Self {
-            what: question.title,
+            what: &stated.title,
             truth: None,
             estimate: None,
             std_error: None,
@@ -150,23 +147,23 @@ impl<'a> Row<'a> {
     }
 }
 
-fn json(question: &Question, answer: &Answer, figures: &[PathBuf], options: &Options) -> io::Result<()> {
+fn json(stated: &Stated, answer: &Answer, figures: &[PathBuf], options: &Options) -> io::Result<()> {
     let row = Row::of(answer, figures);
-    let row = if options.edition == Edition::Solution { row } else { row.untold(question) };
+    let row = if options.edition == Edition::Solution { row } else { row.untold(stated) };
     writeln!(io::stdout(), "{}", serde_json::to_string(&row)?)
 }
 
 fn text(
     question: &Question,
+    stated: &Stated,
     rows: &[(&Answer, Vec<PathBuf>)],
-    wrong: &[(String, &str)],
     options: &Options,
 ) -> io::Result<()> {
     let out = &mut io::stdout().lock();
-    writeln!(out, "\n{}  {}\n", question.id, question.title)?;
-    wrapped(out, question.statement)?;
+    writeln!(out, "\n{}  {}\n", question.id, stated.title)?;
+    wrapped(out, &stated.statement)?;
     if options.edition == Edition::Solution {
-        writeln!(out, "\n    closed form  {}", question.formula)?;
+        writeln!(out, "\n    closed form  {}", stated.formula)?;
         let own = options.own(question);
         if !own.is_empty() {
             writeln!(out, "    below        {own}, instead of the sheet's")?;
@@ -182,10 +179,11 @@ fn text(
             writeln!(out, "    figure       {}", svg.display())?;
         }
     }
-    if !wrong.is_empty() {
+    let solved = options.edition == Edition::Solution;
+    if solved && !stated.wrong.is_empty() {
         writeln!(out, "\n    classic wrong answers")?;
     }
-    for (answer, slip) in wrong {
+    for (answer, slip) in stated.wrong.iter().filter(|_| solved) {
         wrapped(out, &format!("· {answer}: {slip}"))?;
     }
     if options.edition == Edition::Solution {
@@ -279,9 +277,12 @@ fn wrapped(out: &mut impl Write, text: &str) -> io::Result<()> {
 }
 
 /// `--hint`
-pub(super) fn hints(questions: &[&Question]) -> Result<()> {
-    let print = |question: &&Question| writeln!(io::stdout(), "{}  {}", question.id, question.hint);
-    questions.iter().try_for_each(print).or_else(until_the_pipe_closes)
+pub(super) fn hints(questions: &[&'static Question], options: &Options) -> Result<()> {
+    for question in questions {
+        let hint = question.at(options)?.hint;
+        writeln!(io::stdout(), "{}  {hint}", question.id).or_else(until_the_pipe_closes)?;
+    }
+    Ok(())
 }
 
 /// `--help` of an example beside the questions
@@ -298,10 +299,11 @@ pub(super) fn help_beside(beside: &Beside) -> Result<()> {
 }
 
 /// `--help`
-pub(super) fn help(questions: &[&Question]) -> Result<()> {
+pub(super) fn help(questions: &[&'static Question]) -> Result<()> {
     let mut text = String::new();
     if let [question] = questions {
-        text += &format!("{}  {}\n\n{}\n\n", question.id, question.title, question.statement);
+        let stated = question.at(&Options::default())?;
+        text += &format!("{}  {}\n\n{}\n\n", question.id, stated.title, stated.statement);
     } else {
         text += "The worksheet: every question in closed form, by an estimator with its error bar, and in a picture.\n\n";
     }
@@ -325,9 +327,9 @@ pub(super) fn help(questions: &[&Question]) -> Result<()> {
 ";
     for question in questions {
         for parameter in question.parameters {
-            let option = format!("--{} {}", parameter.name, parameter.default.placeholder());
-            let owner = if questions.len() > 1 { format!("{}: ", question.id) } else { String::new() };
-            text += &format!("    {option:<20} {owner}{} ({})\n", parameter.help, parameter.default);
+            let owner = if questions.len() > 1 { format!("{}.", question.id) } else { String::new() };
+            let option = format!("--{owner}{} {}", parameter.name, parameter.default.placeholder());
+            text += &format!("    {option:<20} {} ({})\n", parameter.help, parameter.default);
         }
     }
     write!(io::stdout(), "{text}").or_else(until_the_pipe_closes)

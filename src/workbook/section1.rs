@@ -4,12 +4,15 @@ use super::by_hand::{classic, slip};
 use super::{Letter, Number, Parameter, Question, Slip, Value, Wrong};
 use crate::inversion::Exponential;
 
-const RATE: Parameter = Parameter { name: "rate", default: Value::Number(1.0), help: "the rate λ > 0" };
-
-const LAMBDA: Letter = Letter {
-    names: &["λ", "lambda"],
-    value: |options| Exponential::new(options.number("rate")).map(|exponential| exponential.rate()),
-    generic: 0.37,
+const RATE: Parameter = Parameter {
+    name: "rate",
+    default: Value::Number(1.0),
+    help: "the rate λ > 0",
+    letter: Some(Letter {
+        names: &["λ", "lambda"],
+        value: |options| Exponential::new(options.number("rate")).map(|exponential| exponential.rate()),
+        generic: 0.37,
+    }),
 };
 const U: Letter = Letter {
     names: &["u", "U"],
@@ -50,7 +53,6 @@ pub(super) const QUESTIONS: &[Question] = &[
             what: "a sample for the uniform number u, 0.75 where it is to be in digits",
             formula: "−ln(1 − u)/λ or −ln u/λ",
             over_n: None,
-            letters: &[LAMBDA, Letter { value: |_| Ok(0.75), ..U }],
             slips: &[
                 Slip { classic: true, ..TIMES_RATE },
                 Slip { classic: true, ..SIGN },
@@ -72,23 +74,26 @@ pub(super) const QUESTIONS: &[Question] = &[
         example: "q1_1_exponential",
         module: "inversion",
         parameters: &[RATE],
+        derived: &[Letter { value: |_| Ok(0.75), ..U }],
     },
     Question {
         id: "1.2",
         title: "One sample, read off the graph",
-        statement: "For λ = 1 the graphs show the CDF, the inverse CDF and the PDF. If U = 0.75, which value is sampled? Mark the point on the CDF.",
-        hint: "F is drawn with x along the bottom. On which axis does a probability such as 0.75 stand?",
-        formula: "x = −ln(1 − 0.75) = ln 4 = 1.386294, where p(x) = 0.25",
-        latex: &[r"x = -\ln(1 - 0.75) = \ln 4 \approx 1.386294", r"p(x) = e^{-\ln 4} = 0.25"],
-        answer: "Start at 0.75 on the vertical axis of the CDF, go across to the curve and down to x. The same point lies on the inverse \
-                 CDF, above u = 0.75.",
+        statement: "For λ = «λ» the graphs show the CDF, the inverse CDF and the PDF. If U = «u», which value is sampled? Mark the point on the CDF.",
+        hint: "F is drawn with x along the bottom. On which axis does a probability such as «u» stand?",
+        formula: "x = −ln(1 − u)/λ = «−ln(1 − u)/λ», where p(x) = λ(1 − u) = «λ(1 − u)»",
+        latex: &[
+            r"x = -\frac{\ln(1 - u)}{\lambda} = -\frac{\ln(1 - «u»)}{«λ»} \approx «−ln(1 − u)/λ»",
+            r"p(x) = \lambda e^{-\lambda x} = \lambda (1 - u) = «λ(1 − u)»",
+        ],
+        answer: "Start at «u» on the vertical axis of the CDF, go across to the curve and down to x. The same point lies on the inverse \
+                 CDF, above u = «u».",
         numbers: &[Number {
             part: "",
             symbol: "x",
             what: "the sample for the uniform number u",
             formula: "−ln(1 − u)/λ",
             over_n: None,
-            letters: &[LAMBDA, U],
             slips: &[
                 classic(
                     "ln-u",
@@ -117,8 +122,14 @@ pub(super) const QUESTIONS: &[Question] = &[
         module: "inversion",
         parameters: &[
             RATE,
-            Parameter { name: "u", default: Value::Number(0.75), help: "the uniform number u in [0, 1]" },
+            Parameter {
+                name: "u",
+                default: Value::Number(0.75),
+                help: "the uniform number u in [0, 1]",
+                letter: Some(U),
+            },
         ],
+        derived: &[],
     },
     Question {
         id: "1.3",
@@ -142,5 +153,6 @@ pub(super) const QUESTIONS: &[Question] = &[
         example: "q1_3_axes",
         module: "inversion",
         parameters: &[RATE],
+        derived: &[],
     },
 ];

@@ -3,23 +3,23 @@
 use super::by_hand::{classic, slip};
 use super::{Letter, Number, Parameter, Question, Value, Wrong};
 use crate::error::require;
-use crate::lambertian::Lambertian;
+use crate::lambertian::{CosinePower, Lambertian, RingLight};
 
-const ALBEDO: Parameter =
-    Parameter { name: "albedo", default: Value::Number(0.8), help: "the albedo ρ in [0, 1]" };
-const RADIANCE: Parameter =
-    Parameter {
-        name: "radiance", default: Value::Number(1.0), help: "the incoming radiance, in W m⁻² sr⁻¹"
-    };
-const A: Parameter =
-    Parameter {
-        name: "a", default: Value::Number(1.0), help: "the exponent of the light cos^a θ, above -2"
-    };
-
-const RHO: Letter = Letter {
-    names: &["ρ", "rho"],
-    value: |options| Lambertian::new(options.number("albedo")).map(Lambertian::albedo),
-    generic: 0.61,
+const ALBEDO: Parameter = Parameter {
+    name: "albedo",
+    default: Value::Number(0.8),
+    help: "the albedo ρ in [0, 1]",
+    letter: Some(Letter {
+        names: &["ρ", "rho"],
+        value: |options| Lambertian::new(options.number("albedo")).map(Lambertian::albedo),
+        generic: 0.61,
+    }),
+};
+const RADIANCE: Parameter = Parameter {
+    name: "radiance",
+    default: Value::Number(1.0),
+    help: "the incoming radiance, in W m⁻² sr⁻¹",
+    letter: Some(L_I),
 };
 const L_I: Letter = Letter {
     names: &["L_i", "Li", "L"],
@@ -28,6 +28,16 @@ const L_I: Letter = Letter {
         require("the radiance", radiance, radiance.is_finite(), "finite")
     },
     generic: 1.7,
+};
+const A: Parameter = Parameter {
+    name: "a",
+    default: Value::Number(1.0),
+    help: "the exponent of the light cos^a θ, above -2",
+    letter: Some(Letter {
+        names: &["a"],
+        value: |options| CosinePower::new(options.number("a")).map(|sky| sky.a()),
+        generic: 0.43,
+    }),
 };
 
 pub(super) const QUESTIONS: &[Question] = &[
@@ -49,7 +59,6 @@ pub(super) const QUESTIONS: &[Question] = &[
             what: "the emitted radiance",
             formula: "0",
             over_n: None,
-            letters: &[RHO, Letter { value: |_| Ok(1.0), ..L_I }],
             slips: &[
                 classic("reflected", "ρ or ρ L_i", "ρ says what is reflected, not what is emitted"),
                 slip("one", "1 or L_i", "wood does not glow: what it reflects is not emitted"),
@@ -62,6 +71,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         example: "q3_1_emission",
         module: "lambertian",
         parameters: &[ALBEDO],
+        derived: &[Letter { value: |_| Ok(1.0), ..L_I }],
     },
     Question {
         id: "3.2",
@@ -69,9 +79,9 @@ pub(super) const QUESTIONS: &[Question] = &[
         statement: "The incoming radiance L_i is the same from every direction of the hemisphere above p, on the cube's top face. What is the reflected \
                     radiance L_r? (Write dω in terms of θ and φ.)",
         hint: "dω = sin θ dθ dφ. Substitute u = sin θ.",
-        formula: "L_r = ρ L_i",
+        formula: "L_r = ρ L_i = «ρ L_i»",
         latex: &[
-            r"L_r = \frac{\rho}{\pi} L_i \int_0^{2\pi}\!\! d\varphi \int_0^{\pi/2} \cos\theta \sin\theta\, d\theta = \frac{\rho}{\pi} L_i \cdot 2\pi \cdot \frac12 = \rho L_i",
+            r"L_r = \frac{\rho}{\pi} L_i \int_0^{2\pi}\!\! d\varphi \int_0^{\pi/2} \cos\theta \sin\theta\, d\theta = \frac{\rho}{\pi} L_i \cdot 2\pi \cdot \frac12 = \rho L_i = «ρ L_i»",
         ],
         answer: "A solid angle is dω = sin θ dθ dφ, so the integrand is cos θ sin θ, whose integral over θ is ½. The π of the BRDF is there to cancel the π \
                  that is left: a white surface (ρ = 1) under a uniform sky is as bright as the sky.",
@@ -81,7 +91,6 @@ pub(super) const QUESTIONS: &[Question] = &[
             what: "the reflected radiance L_r",
             formula: "ρ L_i",
             over_n: None,
-            letters: &[RHO, L_I],
             slips: &[
                 classic("no-sine", "2ρ L_i", "sin θ or cos θ forgotten in the integral"),
                 classic("no-pi", "π ρ L_i", "the 1/π of the BRDF forgotten"),
@@ -110,6 +119,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         example: "q3_2_uniform_sky",
         module: "lambertian",
         parameters: &[ALBEDO, RADIANCE],
+        derived: &[],
     },
     Question {
         id: "3.3",
@@ -135,6 +145,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         example: "q3_3_dependence",
         module: "lambertian",
         parameters: &[ALBEDO, RADIANCE],
+        derived: &[],
     },
     Question {
         id: "3.4",
@@ -147,14 +158,13 @@ pub(super) const QUESTIONS: &[Question] = &[
             r"\hat L_r = \frac1n \sum_{j=1}^n \frac{\frac{\rho}{\pi} L_i(\omega_j)\cos\theta_j}{\frac{1}{2\pi}} = \frac{2\rho}{n}\sum_{j=1}^n L_i(\omega_j)\cos\theta_j",
         ],
         answer: "The BRDF ρ/π is constant, so a density proportional to it is constant too, and integrates to 1 over the hemisphere's 2π steradians: p = 1/(2π). \
-                 Each draw is the integrand over the density. The light here is L cos^a θ, whose reflection is 2ρL/(a + 2).",
+                 Each draw is the integrand over the density. The light here is L cos^a θ with a = «a», whose reflection is 2ρL/(a + 2) = «2ρ L/(a + 2)».",
         numbers: &[Number {
             part: "",
             symbol: "c",
             what: "the factor c",
             formula: "2ρ",
             over_n: Some("c/n Σ L_i cos θ"),
-            letters: &[RHO],
             slips: &[
                 classic(
                     "whole-sphere",
@@ -190,6 +200,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         example: "q3_4_brdf_directions",
         module: "lambertian",
         parameters: &[ALBEDO, RADIANCE, A],
+        derived: &[],
     },
     Question {
         id: "3.5",
@@ -208,7 +219,6 @@ pub(super) const QUESTIONS: &[Question] = &[
             what: "the factor c",
             formula: "ρ",
             over_n: Some("c/n Σ L_i"),
-            letters: &[RHO],
             slips: &[
                 slip("uniform", "2ρ", "the uniform estimator's factor: here p = cos θ/π"),
                 slip("no-pi", "π ρ", "the 1/π of the BRDF forgotten"),
@@ -236,6 +246,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         example: "q3_5_cosine_directions",
         module: "lambertian",
         parameters: &[ALBEDO, RADIANCE, A],
+        derived: &[],
     },
     Question {
         id: "3.6",
@@ -250,7 +261,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         answer: "The rate 1/√n is the same; the constant is smaller when the density is close to the integrand's shape, and the integrand has a factor cos θ. The \
                  variance is 0 exactly when p is proportional to an integrand of one sign: cosine under a uniform sky. But cosine does not always win: under the light cos^a θ both are equal \
                  at a = −½, and as a → −1 uniform directions have no variance and cosine ones an infinite one. With light only along the horizon, cos θ < ε, cosine's variance is \
-                 the larger for ε < ¾: 8 times at ε = 0.1.",
+                 the larger for ε < ¾, and «(1 − ε²)/(4ε/3 − ε²)» times uniform's at ε = «ε».",
         numbers: &[],
         wrong: &[
             Wrong {
@@ -275,7 +286,13 @@ pub(super) const QUESTIONS: &[Question] = &[
                 name: "width",
                 default: Value::Number(0.1),
                 help: "the width ε of the ring of light cos θ ≤ ε, in (0, 1]",
+                letter: Some(Letter {
+                    names: &["ε", "epsilon"],
+                    value: |options| RingLight::new(options.number("width")).map(|ring| ring.width()),
+                    generic: 0.17,
+                }),
             },
         ],
+        derived: &[],
     },
 ];

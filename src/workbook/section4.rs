@@ -1,31 +1,59 @@
 //! The questions of section 4, paths in the box room.
 
-use super::{Parameter, Question, Value, Wrong};
+use super::{Letter, Options, Parameter, Question, Value, Wrong};
+use crate::box_room::{BoxRoom, Scene};
+use crate::error::Result;
+
+/// The room, if all of its numbers are in their domains.
+fn room(options: &Options) -> Result<Scene> {
+    BoxRoom::new(options.scene()).map(|room| *room.scene())
+}
 
 const WALL_ALBEDO: Parameter = Parameter {
     name: "wall-albedo",
     default: Value::Number(0.5),
     help: "the albedo ρ of walls, floor and ceiling, in [0, 1]",
+    letter: Some(Letter {
+        names: &["ρ_wall"],
+        value: |options| room(options).map(|scene| scene.wall_albedo),
+        generic: 0.61,
+    }),
 };
 const CUBE_ALBEDO: Parameter = Parameter {
     name: "cube-albedo",
     default: Value::Number(0.8),
     help: "the albedo ρ of the cube, in [0, 1]",
+    letter: Some(Letter {
+        names: &["ρ_cube"],
+        value: |options| room(options).map(|scene| scene.cube_albedo),
+        generic: 0.37,
+    }),
 };
 const RADIANCE: Parameter = Parameter {
     name: "radiance",
     default: Value::Number(10.0),
     help: "the light's radiance L_e, in W m⁻² sr⁻¹",
+    letter: Some(Letter {
+        names: &["L_e"],
+        value: |options| room(options).map(|scene| scene.radiance),
+        generic: 7.0,
+    }),
 };
 const LIGHT_HALF_WIDTH: Parameter = Parameter {
     name: "light-half-width",
     default: Value::Number(0.5),
     help: "half the light's side in metres, from 0 (no light) to 2",
+    letter: Some(Letter {
+        names: &["s"],
+        value: |options| room(options).map(|scene| scene.light_half_width),
+        generic: 0.83,
+    }),
 };
 const POINT: Parameter = Parameter {
     name: "point",
     default: Value::Point([0.0, 0.0, 1.0]),
     help: "the point p on a face of the cube or the room, in metres",
+    letter: None,
 };
 
 pub(super) const QUESTIONS: &[Question] = &[
@@ -33,7 +61,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         id: "4.1",
         title: "Paths of two bounces",
         statement: "The cube stands in a room; all faces are diffuse, and a light hangs in the ceiling. Draw several paths of two bounces that end at p, on the cube's top, \
-                    and go on to the eye. Label ω_o, ω_i, p and the point p_j where each of them leaves the wall.",
+                    and go on to the eye. Label ω_o, ω_i, p and the point p_j of the room that each of them meets first.",
         hint: "Draw backwards, as a path tracer does: from p in a random direction ω_i to the point p_j that it meets, and from there to the light. A bounce is a vertex between light and eye.",
         formula: "light → p_j → p → eye: two bounces, at p_j and at p, for every ω_i above the surface",
         latex: &[
@@ -58,11 +86,12 @@ pub(super) const QUESTIONS: &[Question] = &[
             },
         ],
         on_the_original: Some(
-            "The room, its light and its measures are this workbook's: 4 m wide, 4 m deep, 4 m high, a cube of 1 m on the floor, a light of 1 m² in the middle of the ceiling.",
+            "The room, its light and its measures are this workbook's: 4 m wide, 4 m deep, 4 m high, a cube of 1 m on the floor, a square light of «2s» m in the middle of the ceiling.",
         ),
         example: "q4_1_two_bounces",
         module: "paths",
         parameters: &[WALL_ALBEDO, CUBE_ALBEDO, RADIANCE, LIGHT_HALF_WIDTH, POINT],
+        derived: &[],
     },
     Question {
         id: "4.2",
@@ -74,7 +103,7 @@ pub(super) const QUESTIONS: &[Question] = &[
             r"\text{light} \to \mathbf p_j' \to \mathbf p_j \to \mathbf p \xrightarrow{\;\omega_o\;} \text{eye}",
         ],
         answer: "Every vertex draws its next direction around its own normal. A path of three bounces sees more of the room than one of two: floor, ceiling and the cube's sides are reached now. Each bounce \
-                 multiplies the light by the albedo of the face, 0.5 on a wall, so what comes after more bounces is less, but never nothing.",
+                 multiplies the light by the albedo of the face, «ρ_wall» on a wall, so what comes after more bounces is less, but never nothing.",
         numbers: &[],
         wrong: &[
             Wrong { answer: "p_j′ on the same wall as p_j", slip: "a flat face does not see itself" },
@@ -91,12 +120,13 @@ pub(super) const QUESTIONS: &[Question] = &[
         example: "q4_2_three_bounces",
         module: "paths",
         parameters: &[WALL_ALBEDO, CUBE_ALBEDO, RADIANCE, LIGHT_HALF_WIDTH, POINT],
+        derived: &[],
     },
     Question {
         id: "4.3",
         title: "The estimator for paths",
         statement: "n paths of two bounces are followed from the eye to p, to p_j in directions ω_ij drawn from p(ω), and to the light. Express the Monte Carlo estimator of the outgoing radiance at p \
-                    in terms of the outgoing radiance L_o(p_j, −ω_ij).",
+                    in terms of the radiance L_o that leaves p_j.",
         hint: "It is the estimator of 3.4. What is the light that arrives at p from ω_ij, seen from where it left?",
         formula: "L̂_o(p, ω_o) = 1/n Σ (ρ/π) L_o(p_j, −ω_ij) cos θ_ij / p(ω_ij), n counting all directions",
         latex: &[
@@ -138,8 +168,10 @@ pub(super) const QUESTIONS: &[Question] = &[
                 name: "bounces",
                 default: Value::Limit(Some(2)),
                 help: "the number of bounces K, from 0 to 64, or all",
+                letter: None,
             },
             POINT,
         ],
+        derived: &[],
     },
 ];

@@ -2,23 +2,37 @@
 
 use super::by_hand::{classic, slip};
 use super::{Letter, Number, Parameter, Question, Value, Wrong};
-use crate::roulette::Roulette;
+use crate::roulette::{LightModel, Roulette};
 
 const ALBEDO: Parameter = Parameter {
     name: "albedo",
     default: Value::Number(0.8),
     help: "the albedo ρ of every vertex, in [0, 1)",
+    letter: Some(Letter {
+        names: &["ρ", "rho"],
+        value: |options| LightModel::new(options.number("albedo"), 1.0).map(|model| model.albedo()),
+        generic: 0.61,
+    }),
 };
 const VISIBILITY: Parameter = Parameter {
     name: "visibility",
     default: Value::Number(0.5),
     help: "the probability v that a vertex sees the light, in [0, 1]",
+    letter: Some(Letter {
+        names: &["v"],
+        value: |options| LightModel::new(0.0, options.number("visibility")).map(|model| model.visibility()),
+        generic: 0.37,
+    }),
 };
-
-const P_RR: Letter = Letter {
-    names: &["p_rr", "prr", "p", "q"],
-    value: |options| Roulette::new(options.number("p-rr")).map(|roulette| roulette.p_rr()),
-    generic: 0.83,
+const P_RR: Parameter = Parameter {
+    name: "p-rr",
+    default: Value::Number(0.8),
+    help: "the continuation probability p_rr in (0, 1)",
+    letter: Some(Letter {
+        names: &["p_rr", "prr", "p", "q"],
+        value: |options| Roulette::new(options.number("p-rr")).map(|roulette| roulette.p_rr()),
+        generic: 0.83,
+    }),
 };
 
 const EXPECTED_BOUNCES: Number = Number {
@@ -27,7 +41,6 @@ const EXPECTED_BOUNCES: Number = Number {
     what: "the expected number of bounces E[N]",
     formula: "p_rr/(1 − p_rr)",
     over_n: None,
-    letters: &[P_RR],
     slips: &[
         classic("coins", "1/(1 − p_rr)", "1/(1 − p) counts coins, N + 1: subtract 1"),
         classic("exchanged", "(1 − p_rr)/p_rr", "p and 1 − p exchanged"),
@@ -43,17 +56,18 @@ const EXPECTED_BOUNCES: Number = Number {
 pub(super) const QUESTIONS: &[Question] = &[
     Question {
         id: "5.1",
-        title: "Bounces at p_rr = 4/5",
+        title: "Bounces at p_rr = «p_rr»",
         statement: "With Russian roulette a ray goes on with probability p_rr at every step, and X becomes X/p_rr if it does and 0 if not. Let \
-                    p_rr = 4/5, and N ≥ 0 the number of bounces. (i) What is P(N = 0)? (ii) What is P(N = 2)? (iii) What is E[N]?",
+                    p_rr = «p_rr», and N ≥ 0 the number of bounces. (i) What is P(N = 0)? (ii) What is P(N = 2)? (iii) What is E[N]?",
         hint: "N = k means going on k times and then stopping. For E[N], count the trials up to the first stop, and then do not count the stop.",
-        formula: "P(N = k) = p_rr^k (1 − p_rr): 1/5, 16/125; E[N] = p_rr/(1 − p_rr) = 4",
+        formula: "P(N = k) = p_rr^k (1 − p_rr): «1 − p_rr» for k = 0, «p_rr² (1 − p_rr)» for k = 2; E[N] = p_rr/(1 − p_rr) = «p_rr/(1 − p_rr)»",
         latex: &[
-            r"P(N = k) = p_{rr}^k\,(1 - p_{rr}), \qquad P(N=0) = \frac15, \qquad P(N=2) = \Big(\frac45\Big)^2\cdot\frac15 = \frac{16}{125}",
-            r"E[N] = \frac{1}{1 - p_{rr}} - 1 = \frac{p_{rr}}{1 - p_{rr}} = 4",
+            r"P(N = k) = p_{rr}^k\,(1 - p_{rr})",
+            r"P(N=0) = «1 − p_rr», \qquad P(N=2) = «p_rr»^2 \cdot «1 − p_rr» = «p_rr² (1 − p_rr)»",
+            r"E[N] = \frac{1}{1 - p_{rr}} - 1 = \frac{p_{rr}}{1 - p_{rr}} = «p_rr/(1 − p_rr)»",
         ],
         answer: "N = k takes k times going on and one stop. N + 1 counts trials up to the first stop, which has probability 1 − p_rr, so its mean is \
-                 1/(1 − p_rr) = 5. The division by p_rr pays for the rays that stop: E[X_rr] = p_rr · E[X]/p_rr = E[X], if the coin is independent of X. The same law is \
+                 1/(1 − p_rr) = «1/(1 − p_rr)». The division by p_rr pays for the rays that stop: E[X_rr] = p_rr · E[X]/p_rr = E[X], if the coin is independent of X. The same law is \
                  drawn in one step by inversion, N = ⌊ln(1 − U)/ln p_rr⌋.",
         numbers: &[
             Number {
@@ -62,7 +76,6 @@ pub(super) const QUESTIONS: &[Question] = &[
                 what: "the probability P(N = 0)",
                 formula: "1 − p_rr",
                 over_n: None,
-                letters: &[P_RR],
                 slips: &[
                     slip("goes-on", "p_rr", "the chance of going on, not of ending"),
                     slip("one-bounce", "p_rr (1 − p_rr)", "one bounce and then the end: that is N = 1"),
@@ -77,7 +90,6 @@ pub(super) const QUESTIONS: &[Question] = &[
                 what: "the probability P(N = 2)",
                 formula: "p_rr² (1 − p_rr)",
                 over_n: None,
-                letters: &[P_RR],
                 slips: &[
                     classic("no-end", "p_rr²", "p²: the factor 1 − p for the end is missing"),
                     slip("exchanged", "(1 − p_rr)² p_rr", "p and 1 − p exchanged"),
@@ -114,35 +126,26 @@ pub(super) const QUESTIONS: &[Question] = &[
         ),
         example: "q5_1_bounces",
         module: "roulette",
-        parameters: &[Parameter {
-            name: "p-rr",
-            default: Value::Number(0.8),
-            help: "the continuation probability p_rr in (0, 1)",
-        }],
+        parameters: &[P_RR],
+        derived: &[],
     },
     Question {
         id: "5.2",
-        title: "Bounces at p_rr = 1/5",
-        statement: "With p_rr = 1/5, what is the expected number of bounces E[N]?",
+        title: "A smaller p_rr: «p_rr»",
+        statement: "With p_rr = «p_rr», what is the expected number of bounces E[N]?",
         hint: "The same as 5.1(iii), with another p_rr.",
-        formula: "E[N] = p_rr/(1 − p_rr) = 1/4",
-        latex: &[r"E[N] = \frac{1}{1-\frac15} - 1 = \frac54 - 1 = \frac14"],
-        answer: "Four rays of five stop at once. That is cheap, and it stays unbiased; but with an albedo of 0.8 every bounce that is taken weighs ρ/p_rr = 4 times more than the last \
-                 one, and for p_rr ≤ ρ² the variance is infinite. The mean of a thousand such paths is usually too dark, its error bar too short.",
+        formula: "E[N] = p_rr/(1 − p_rr) = «p_rr/(1 − p_rr)»",
+        latex: &[r"E[N] = \frac{1}{1 - «p_rr»} - 1 = «1/(1 − p_rr)» - 1 = «p_rr/(1 − p_rr)»"],
+        answer: "A share «1 − p_rr» of the rays stops at once. That is cheap, and it stays unbiased; but with an albedo of «ρ» every \
+                 bounce that is taken weighs ρ/p_rr = «ρ/p_rr» times as much as the one before, and where p_rr ≤ ρ² = «ρ²» \
+                 the variance is infinite: the mean of a thousand such paths is then usually too dark, its error bar too short.",
         numbers: &[EXPECTED_BOUNCES],
         wrong: &[],
         on_the_original: None,
         example: "q5_2_few_bounces",
         module: "roulette",
-        parameters: &[
-            Parameter {
-                name: "p-rr",
-                default: Value::Number(0.2),
-                help: "the continuation probability p_rr in (0, 1)",
-            },
-            ALBEDO,
-            VISIBILITY,
-        ],
+        parameters: &[Parameter { default: Value::Number(0.2), ..P_RR }, ALBEDO, VISIBILITY],
+        derived: &[],
     },
     Question {
         id: "5.3",
@@ -154,15 +157,15 @@ pub(super) const QUESTIONS: &[Question] = &[
             r"E[N] = \frac{p_{rr}}{1-p_{rr}}, \qquad \operatorname{Var} N = \frac{p_{rr}}{(1-p_{rr})^2}",
             r"\operatorname{Var} = \frac{A(1-q)+Bq}{q-\rho^2}\ (q > \rho^2), \quad \text{cost} = \frac1{1-q}, \quad A = \frac{v^2\rho^2}{(1-\rho)^2},\ B = v(1-v)",
         ],
-        answer: "It grows, slowly at first and without bound as p_rr → 1, and its standard deviation is larger than it everywhere. What that buys is seen where every vertex sees the \
-                 light with probability v and reflects ρ of it: a larger q lowers the variance and raises the cost, and their product is least at q*, between ρ and 1. Stopping after a fixed \
+        answer: "It grows, slowly at first and without bound as p_rr → 1, and its standard deviation is larger than it everywhere. What that buys is seen in a model: at each vertex the path \
+                 sees the light with probability v = «v», a fraction ρ = «ρ» is reflected, and q is p_rr. A larger q lowers the variance and raises the cost, and their product is least at q*, between ρ and 1. Stopping after a fixed \
                  number of bounces instead is biased: cheaper at first, overtaken by roulette later.",
         numbers: &[],
         wrong: &[
             Wrong { answer: "it lowers E[N]", slip: "p_rr is the probability of going on, not of stopping" },
             Wrong {
                 answer: "E[N] is proportional to p_rr",
-                slip: "only for small p_rr: from 0.8 to 0.9 it goes from 4 to 9",
+                slip: "only for small p_rr: from 1/2 to 3/4 it goes from 1 to 3",
             },
             Wrong {
                 answer: "it removes bias",
@@ -173,18 +176,16 @@ pub(super) const QUESTIONS: &[Question] = &[
         example: "q5_3_more_bounces",
         module: "roulette",
         parameters: &[
-            Parameter {
-                name: "p-rr",
-                default: Value::Number(0.8),
-                help: "the continuation probability q of the paths, in (0, 1)",
-            },
+            Parameter { help: "the continuation probability q of the paths, in (0, 1)", ..P_RR },
             ALBEDO,
             VISIBILITY,
             Parameter {
                 name: "max-k",
                 default: Value::Number(8.0),
                 help: "the last vertex of truncated paths",
+                letter: None,
             },
         ],
+        derived: &[],
     },
 ];

@@ -100,7 +100,7 @@ impl Wish {
                     wish.seed = options::whole(&mut line, "--seed")?;
                 }
                 _ => {
-                    options::parameter(questions(), &name)?;
+                    options::parameter(questions(), &name, &name)?;
                     let value = options::text(&mut line, &format!("--{name}"))?;
                     wish.own.push((name, value));
                 }

@@ -1,0 +1,109 @@
+//! A question's texts at its parameters.
+
+use super::grammar;
+use super::{Options, Question};
+use crate::error::{Error, Result};
+use crate::numbers::in_a_text;
+
+/// A letter that stands for a number.
+#[derive(Debug, Clone, Copy)]
+pub struct Letter {
+    /// Its spellings, the worksheet's first.
+    pub names: &'static [&'static str],
+    /// Its value at the question's parameters, with the domain that the question's own module gives them.
+    pub value: fn(&Options) -> Result<f64>,
+    /// Another value, at which formulas that are not the same do not agree.
+    pub generic: f64,
+}
+
+/// A question's texts, with the values of its parameters in them; see [`Question`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stated {
+    /// A few words, which do not tell the answer.
+    pub title: String,
+    /// What is asked.
+    pub statement: String,
+    /// A nudge that does not tell the answer.
+    pub hint: String,
+    /// The closed form in a line of plain text.
+    pub formula: String,
+    /// The same in LaTeX, a displayed formula each.
+    pub latex: Vec<String>,
+    /// Why it is so, in a paragraph.
+    pub answer: String,
+    /// Classic wrong answers, each with the slip that leads there.
+    pub wrong: Vec<(String, String)>,
+    /// Where the sheet as it was handed out needs correcting.
+    pub on_the_original: Option<String>,
+}
+
+impl Question {
+    /// Its texts at its parameters, those that the options name in place of the sheet's.
+    ///
+    /// # Errors
+    /// If a parameter lies outside its domain; the question is named.
+    ///
+    /// ```
+    /// use unbiased::workbook::{Options, question};
+    ///
+    /// let question = question("5.2")?;
+    /// let mut options = Options::default();
+    /// options.set(question, "p-rr", "0.6")?;
+    /// assert_eq!(question.at(&options)?.formula, "E[N] = p_rr/(1 − p_rr) = 1.5");
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    pub fn at(&'static self, options: &Options) -> Result<Stated> {
+        let options = options.for_question(self);
+        let named = |error| match error {
+            Error::Usage(reason) => Error::Usage(reason),
+            other => Error::Usage(format!("question {}: {other}", self.id)),
+        };
+        let letters = self.values(&options).map_err(named)?;
+        let fill = |text: &str| self.filled(text, &letters);
+        let wrong = self.classic_wrong_answers(&options).map_err(named)?;
+        let wrong = wrong.into_iter().map(|(answer, slip)| Ok((fill(&answer)?, fill(slip)?)));
+        Ok(Stated {
+            title: fill(self.title)?,
+            statement: fill(self.statement)?,
+            hint: fill(self.hint)?,
+            formula: fill(self.formula)?,
+            latex: self.latex.iter().map(|latex| fill(latex)).collect::<Result<_>>()?,
+            answer: fill(self.answer)?,
+            wrong: wrong.collect::<Result<_>>()?,
+            on_the_original: self.on_the_original.map(fill).transpose()?,
+        })
+    }
+
+    /// The letters of its formulas.
+    pub(super) fn letters(&self) -> impl Iterator<Item = &'static Letter> + use<> {
+        let own = self.parameters.iter().filter_map(|parameter| parameter.letter.as_ref());
+        own.chain(self.derived)
+    }
+
+    /// What they stand for at the question's parameters.
+    pub(super) fn values(&self, options: &Options) -> Result<Vec<f64>> {
+        self.letters().map(|letter| (letter.value)(options)).collect()
+    }
+
+    /// The value of a formula in its letters.
+    pub(super) fn value(&self, formula: &str, letters: &[f64]) -> Result<f64> {
+        let spellings: Vec<_> = self.letters().map(|letter| letter.names).collect();
+        let value = grammar::read(formula, &spellings, &[]);
+        let value = value.and_then(|tokens| grammar::evaluate(&tokens, letters)).map(|known| known.value);
+        value.ok_or_else(|| Error::Usage(format!("the formula \"{formula}\" is not understood")))
+    }
+
+    fn filled(&self, text: &str, letters: &[f64]) -> Result<String> {
+        let mut filled = String::new();
+        let mut rest = text;
+        while let Some((before, formula, after)) = rest
+            .split_once('«')
+            .and_then(|(before, rest)| rest.split_once('»').map(|(formula, after)| (before, formula, after)))
+        {
+            filled += before;
+            filled += &in_a_text(self.value(formula, letters)?);
+            rest = after;
+        }
+        Ok(filled + rest)
+    }
+}
