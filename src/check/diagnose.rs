@@ -89,15 +89,14 @@ pub fn diagnose(measurements: &[Measurement]) -> Result<Diagnosis> {
     });
     diagnosis.groups = grouped(measurements, singles);
     if diagnosis.groups.is_empty() && (wrong || constant) {
-        let of = |compound: &'static Compound| Candidate {
+        let found: Vec<_> = measurements.iter().map(|of| exercise.compound_ratios(of.probe)).collect();
+        let of = |(index, compound): (usize, &'static Compound)| Candidate {
             factor: Some(&compound.factor),
             mistake: compound.base.and_then(|base| exercise.mistakes().get(base)),
-            ratios: per_probe(measurements, |probe| {
-                compound.ratios.get(probe.index()).copied().unwrap_or(Ratio::UNKNOWN)
-            }),
+            ratios: found.iter().filter_map(|ratios| ratios.get(index).copied()).collect(),
         };
         diagnosis.compared += exercise.compounds().len();
-        diagnosis.groups = grouped(measurements, exercise.compounds().iter().map(of));
+        diagnosis.groups = grouped(measurements, exercise.compounds().iter().enumerate().map(of));
     }
     diagnosis.finding = if !diagnosis.groups.is_empty() && (wrong || constant) {
         for group in &mut diagnosis.groups {
@@ -122,6 +121,17 @@ impl Diagnosis {
             self.counterexample = counterexample(self.exercise, attempt);
         }
         self
+    }
+}
+
+impl Measurement {
+    /// Whether the draws are enough to say so, and consistent with the truth.
+    pub fn is_right(&self) -> bool {
+        if self.estimate.draws() < FEWEST || self.never_varied() {
+            return self.estimate.draws() >= FEWEST && self.is_the_truth();
+        }
+        let known = self.ratio().error <= COARSE;
+        known && within(1, self.misfit(Ratio::exact(self.probe.right_ratio())), REGION)
     }
 }
 
@@ -231,7 +241,8 @@ impl Group {
     fn sort_by_spread(&mut self, exercise: &Exercise, measurements: &[Measurement]) {
         if self.candidates.len() > 1 {
             self.candidates.sort_by_cached_key(|candidate| {
-                let strangeness = candidate.mistake.map_or(0.0, |of| strangeness(exercise, of, measurements));
+                let single = candidate.mistake.filter(|_| candidate.factor.is_none());
+                let strangeness = single.map_or(0.0, |of| strangeness(exercise, of, measurements));
                 // at least 0, so the order of bits is that of numbers
                 strangeness.to_bits()
             });
@@ -298,14 +309,7 @@ impl Diagnosis {
 
     /// The probes on which the draws are right, where they are wrong elsewhere.
     pub fn right_on(&self) -> impl Iterator<Item = &'static Probe> + '_ {
-        let right = |of: &&Measurement| {
-            if of.never_varied() {
-                return of.is_the_truth();
-            }
-            let known = of.ratio().error <= COARSE;
-            known && within(1, of.misfit(Ratio::exact(of.probe.right_ratio())), REGION)
-        };
-        self.measurements.iter().filter(right).map(|measurement| measurement.probe)
+        self.measurements.iter().filter(|of| of.is_right()).map(|measurement| measurement.probe)
     }
 
     /// Why there is no verdict, and what it would take.

@@ -218,8 +218,9 @@ pub struct Exercise {
     probes: Vec<Probe>,
     right: Vec<Box<Draw<'static>>>,
     mistakes: Vec<Mistake>,
-    ratios: OnceLock<Vec<Vec<Ratio>>>,
-    compounds: OnceLock<Vec<Compound>>,
+    compounds: Vec<Compound>,
+    /// Of each probe, once asked for: the ratios of all mistakes, and of all compounds.
+    found: Vec<[OnceLock<Vec<Ratio>>; 2]>,
 }
 
 /// A right estimator, as an exercise holds it.
@@ -239,13 +240,16 @@ impl Exercise {
             given: problem.given(),
             factors: problem.factors(),
         };
+        let probes: Vec<_> = P::all().iter().enumerate().map(probe).collect();
+        let mistakes: Vec<_> =
+            (0..).zip(mistakes).map(|(index, mistake)| Mistake { index, ..mistake }).collect();
         Self {
             about,
-            probes: P::all().iter().enumerate().map(probe).collect(),
+            compounds: compounds(&probes, &mistakes),
+            found: probes.iter().map(|_| Default::default()).collect(),
+            probes,
             right: right.iter().map(|right| erased::<P>(*right)).collect(),
-            mistakes: (0..).zip(mistakes).map(|(index, mistake)| Mistake { index, ..mistake }).collect(),
-            ratios: OnceLock::new(),
-            compounds: OnceLock::new(),
+            mistakes,
         }
     }
 
@@ -290,22 +294,16 @@ impl Exercise {
 
     /// What a mistake's draws average to on a probe, over [`Probe::scale`].
     pub fn ratio(&self, mistake: &Mistake, probe: &Probe) -> Ratio {
-        let ratios = self.ratios.get_or_init(|| {
-            let of = |mistake: &Mistake| {
-                self.probes.par_iter().map(|probe| ratio_of(&*mistake.wrong, probe, 1.0)).collect()
-            };
-            self.mistakes.par_iter().map(of).collect()
-        });
-        ratios.get(mistake.index).and_then(|of| of.get(probe.index)).copied().unwrap_or(Ratio::UNKNOWN)
+        let Some([found, _]) = self.found.get(probe.index) else { return Ratio::UNKNOWN };
+        let of = |mistake: &Mistake| ratio_of(&*mistake.wrong, probe, 1.0);
+        let all = found.get_or_init(|| self.mistakes.par_iter().map(of).collect());
+        all.get(mistake.index).copied().unwrap_or(Ratio::UNKNOWN)
     }
 
-    /// The mean square of a mistake's draws on a probe, over the scale's.
+    /// The mean square of a mistake's draws on a probe, over the scale's: to a few per cent.
     pub(super) fn square(&self, mistake: &Mistake, probe: &Probe) -> f64 {
-        let squared = |index: usize, factor: f64, rng: &mut Stream| {
-            let ratio = (mistake.wrong)(index, factor, rng) / probe.scale;
-            ratio * ratio * probe.scale
-        };
-        ratio_of(&squared, probe, 1.0).mean
+        let squared = from_fn(|rng| ((mistake.wrong)(probe.index, 1.0, rng) / probe.scale).powi(2));
+        estimate(&squared, Budget::Draws(4 * POINTS), 1).map_or(f64::NAN, |square| square.mean())
     }
 
     /// A mistake as an estimator of one's own.
@@ -324,55 +322,23 @@ impl Exercise {
         &self.right
     }
 
-    /// A constant times a right estimator or a mistake, what each comes to on every probe.
+    /// A constant times a right estimator or a mistake.
     pub(super) fn compounds(&self) -> &[Compound] {
-        self.compounds.get_or_init(|| {
-            let symbols = self.probes.first().map_or(&[][..], |probe| &probe.factors);
-            let constants = (0..CONSTANTS.len() + 2 * symbols.len()).map(|which| (which, self.named(which)));
-            let bases =
-                || std::iter::once(None).chain(self.mistakes.iter().map(|mistake| Some(mistake.index)));
-            let all =
-                constants.flat_map(|(which, name)| bases().map(move |base| (which, name.clone(), base)));
-            let all: Vec<_> = all.collect();
-            let of = |(which, factor, base): (usize, String, Option<usize>)| {
-                let on = |probe: &Probe| self.multiplied(which, base, probe);
-                let ratios = self.probes.iter().map(on).collect();
-                Compound { factor, base, ratios }
-            };
-            all.into_par_iter().map(of).collect()
-        })
+        &self.compounds
     }
 
-    /// Constant number `which`: those of mathematics first, then the parameters and their inverses.
-    fn factor(&self, which: usize, probe: &Probe) -> f64 {
-        match (CONSTANTS.get(which), which.checked_sub(CONSTANTS.len())) {
-            (Some((_, constant)), _) => *constant,
-            (None, Some(parameter)) => {
-                let value = probe.factors.get(parameter / 2).map_or(f64::NAN, |(_, value)| *value);
-                if parameter % 2 == 0 { value } else { 1.0 / value }
-            }
-            (None, None) => f64::NAN,
-        }
+    /// What each compound comes to on a probe.
+    pub(super) fn compound_ratios(&self, probe: &Probe) -> &[Ratio] {
+        let Some([_, found]) = self.found.get(probe.index) else { return &[] };
+        let of = |compound: &Compound| self.multiplied(compound, probe);
+        // those of the mistakes alone first: nothing waits for another inside
+        self.mistakes.first().map(|mistake| self.ratio(mistake, probe));
+        found.get_or_init(|| self.compounds.par_iter().map(of).collect())
     }
 
-    fn named(&self, which: usize) -> String {
-        let parameter = |parameter: usize| {
-            let symbols = self.probes.first().and_then(|probe| probe.factors.get(parameter / 2));
-            let symbol = symbols.map_or("", |(symbol, _)| *symbol);
-            if parameter.is_multiple_of(2) {
-                symbol.to_owned()
-            } else if symbol.contains(' ') {
-                format!("1/({symbol})")
-            } else {
-                format!("1/{symbol}")
-            }
-        };
-        CONSTANTS.get(which).map_or_else(|| parameter(which - CONSTANTS.len()), |(name, _)| (*name).into())
-    }
-
-    fn multiplied(&self, which: usize, base: Option<usize>, probe: &Probe) -> Ratio {
-        let factor = self.factor(which, probe);
-        let mistake = base.and_then(|base| self.mistakes.get(base));
+    fn multiplied(&self, compound: &Compound, probe: &Probe) -> Ratio {
+        let factor = factor(compound.which, probe);
+        let mistake = compound.base.and_then(|base| self.mistakes.get(base));
         if probe.averages_draws {
             let ratio = mistake
                 .map_or_else(|| Ratio::exact(probe.right_ratio()), |mistake| self.ratio(mistake, probe));
@@ -391,9 +357,34 @@ impl fmt::Debug for Exercise {
 
 /// A constant times a mistake (by its index), or times a right estimator.
 pub(super) struct Compound {
+    /// What the constant is called.
     pub factor: String,
+    which: usize,
     pub base: Option<usize>,
-    pub ratios: Vec<Ratio>,
+}
+
+fn compounds(probes: &[Probe], mistakes: &[Mistake]) -> Vec<Compound> {
+    let symbols = probes.first().map_or(&[][..], |probe| &probe.factors);
+    let of_mathematics = CONSTANTS.iter().map(|(name, _)| (*name).to_owned());
+    let inverse =
+        |symbol: &str| if symbol.contains(' ') { format!("1/({symbol})") } else { format!("1/{symbol}") };
+    let of_the_problem = symbols.iter().flat_map(|(symbol, _)| [(*symbol).to_owned(), inverse(symbol)]);
+    let bases = || std::iter::once(None).chain(mistakes.iter().map(|mistake| Some(mistake.index)));
+    let constants = of_mathematics.chain(of_the_problem).enumerate();
+    let all = constants
+        .flat_map(|(which, name)| bases().map(move |base| Compound { factor: name.clone(), which, base }));
+    all.collect()
+}
+
+/// Constant number `which`: those of mathematics first, then the problem's parameters and their inverses.
+fn factor(which: usize, probe: &Probe) -> f64 {
+    match (CONSTANTS.get(which), which.checked_sub(CONSTANTS.len())) {
+        (None, Some(parameter)) => {
+            let value = probe.factors.get(parameter / 2).map_or(f64::NAN, |(_, value)| *value);
+            if parameter % 2 == 0 { value } else { 1.0 / value }
+        }
+        (constant, _) => constant.map_or(f64::NAN, |(_, constant)| *constant),
+    }
 }
 
 /// The constants by which draws are usually wrong.

@@ -307,12 +307,8 @@ type Elsewhere<'p> = (usize, Vec<(usize, &'p Probe)>);
 
 /// Draws that do not fit their probe's truth, but another's.
 fn fitting_elsewhere<'p>(measurements: &[Measurement], probes: &[&'static Probe]) -> Vec<Elsewhere<'p>> {
-    let wrong = |of: &Measurement| check::diagnose(std::slice::from_ref(of)).map(|of| of.finding());
-    let misplaced = measurements.iter().filter(|of| !matches!(wrong(of), Ok(Finding::NothingWrong)));
-    let others = misplaced.map(|of| {
-        let fits = |probe: &&&'static Probe| {
-            matches!(wrong(&Measurement { probe, ..*of }), Ok(Finding::NothingWrong))
-        };
+    let others = measurements.iter().filter(|of| !of.is_right()).map(|of| {
+        let fits = |probe: &&&'static Probe| Measurement { probe, ..*of }.is_right();
         let fitting = probes.iter().filter(fits).map(|probe| (number_of(probe, probes), *probe)).collect();
         (number_of(of.probe, probes), fitting)
     });
