@@ -387,6 +387,25 @@ fn a_class_is_judged_in_one_command() {
     assert_eq!(code, Some(2));
 }
 
+/// The numbers of a student's own sheet.
+#[test]
+fn variants_are_known_by_name() {
+    use unbiased::workbook::{Options, question};
+    let question = question("5.2").unwrap();
+    let ada = Options::default().variant("Ada", [question]).unwrap();
+    let [right, coins] =
+        ["p_rr/(1 − p_rr)", "1/(1 − p_rr)"].map(|of| question.evaluate(of, &ada).unwrap()[0].to_string());
+    for (answer, code) in [(&right, 0), (&coins, 1)] {
+        let arguments = ["--question", "5.2", "--variant", "Ada", "--answer", answer, "--exit-code"];
+        let (found, said) = check_mine(&arguments, "");
+        assert_eq!(found, Some(code), "{said}");
+    }
+    let folder = folder("variants");
+    let text = format!("student,question,answer,variant\nAda,5.2,{right},Ada\nBo,5.2,{right},Bo\n");
+    let (_, said) = check_mine(&["--answers", &written(&folder, "a.csv", text), "--csv"], "");
+    assert!(said.contains("Ada,5.2,right") && said.contains("Bo,5.2,wrong"), "{said}");
+}
+
 #[test]
 fn what_cannot_be_judged_is_said_in_one_sentence() {
     let folder = folder("bad");
@@ -395,7 +414,7 @@ fn what_cannot_be_judged_is_said_in_one_sentence() {
     let unknown = csv("unknown.csv", "student,question,answer\nAna,1.2,1\nBo,9.9,1\n");
     let twice = csv("twice.csv", "student,question,answer\nAna,1.2,1\nBo,1.2,1\nAna,1.2,2\n");
     let nobody = csv("nobody.csv", "student,question,answer\n,1.2,1\n");
-    let variant = csv("variant.csv", "student,question,answer,variant\nAna,1.2,1,u:0.3\n");
+    let variant = csv("variant.csv", "student,question,answer,variant\nAna,1.2,1,u=0.3 rate\n");
     let bytes = written(&folder, "bytes.csv", b"student,question,answer\nAna,1.2,\xff\xfe\n");
     let draws = folder.join("draws");
     std::fs::create_dir_all(&draws).unwrap();
@@ -444,7 +463,7 @@ fn what_cannot_be_judged_is_said_in_one_sentence() {
         (&["--answers", &unknown], "", "line 3: there is no question 9.9"),
         (&["--answers", &twice], "", "line 2 and line 4 both answer 1.2 for Ana: keep one of them"),
         (&["--answers", &nobody], "", "line 2: there is no student"),
-        (&["--answers", &variant], "", "line 2: the variant \"u:0.3\" is not of the form name=value"),
+        (&["--answers", &variant], "", "line 2: the variant \"rate\" is not of the form name=value"),
         (&["--answers", &bytes], "", "could not be read"),
         (&["--answers", "no-such.csv"], "", "no-such.csv could not be read"),
         (&["--draws-in", &draws], "", "nameless.txt is not named STUDENT_QUESTION.txt"),

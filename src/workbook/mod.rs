@@ -35,6 +35,7 @@ mod shards;
 mod stated;
 mod terminal;
 mod value;
+mod variant;
 
 use std::process::ExitCode;
 use std::time::Duration;

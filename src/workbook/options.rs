@@ -103,7 +103,7 @@ impl Request {
     }
 
     pub fn parse(mut line: Parser, asked: Asked<'_>) -> Result<Self> {
-        let (mut options, mut hint) = (Options::default(), false);
+        let (mut options, mut hint, mut variant) = (Options::default(), false, None);
         let questions = match asked {
             Asked::Questions(questions) => questions,
             Asked::Beside(_) => &[],
@@ -130,6 +130,7 @@ impl Request {
                     let files: Vec<PathBuf> = line.values().map_err(usage)?.map(PathBuf::from).collect();
                     options.shards = Some(Rc::new(Shards::read(&files)?));
                 }
+                "variant" => variant = Some(text(&mut line, "--variant")?),
                 "edition" => options.edition = edition(&text(&mut line, "--edition")?)?,
                 _ => {
                     let (of, own) = match name.rsplit_once('.') {
@@ -142,6 +143,9 @@ impl Request {
                     options.given.push(Given { of: of.map(str::to_owned), name: parameter.name, value });
                 }
             }
+        }
+        if let Some(name) = variant {
+            options = options.variant(&name, questions.iter().copied())?;
         }
         if hint {
             return Ok(Self::Hint(options));
@@ -265,6 +269,18 @@ impl Options {
         let given = Given { of: None, name: parameter.name, value: parameter.read(given)? };
         self.given.push(given);
         Ok(())
+    }
+
+    /// Takes what other options set, below what is set here.
+    pub(super) fn put_below(&mut self, mut below: Self) {
+        below.given.append(&mut self.given);
+        self.given = below.given;
+    }
+
+    /// Takes what other options set, for this question alone.
+    pub(super) fn take_for(&mut self, question: &Question, options: Self) {
+        let of = |given| Given { of: Some(question.id.to_owned()), ..given };
+        self.given.extend(options.given.into_iter().map(of));
     }
 
     /// The value of the question's own option `name`: as given, or its default.

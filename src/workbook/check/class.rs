@@ -10,6 +10,7 @@ use super::super::by_hand::{self, Judgement};
 use super::super::terminal::{folded, width};
 use super::super::{Options, Table};
 use super::draws::{self, Source};
+use super::wish::Wish;
 use super::{Verdict, exercise};
 use crate::check::{self, Finding};
 use crate::error::{Error, Result};
@@ -35,15 +36,10 @@ struct Row {
 impl Report {
     /// Judges a CSV file with the columns student, question, answer and, if there is one, variant, and a
     /// folder of files `STUDENT_QUESTION.txt` of draws.
-    pub fn of(
-        answers: Option<&str>,
-        draws: Option<&str>,
-        own: &[(String, String)],
-        digits: Option<u32>,
-    ) -> Result<Self> {
+    pub fn of(answers: Option<&str>, draws: Option<&str>, wish: &Wish) -> Result<Self> {
         let mut rows = Vec::new();
         if let Some(path) = answers {
-            read_answers(path, own, digits, &mut rows)?;
+            read_answers(path, wish, &mut rows)?;
         }
         if let Some(path) = draws {
             read_folder(Path::new(path), &mut rows)?;
@@ -185,12 +181,7 @@ impl Given {
     }
 }
 
-fn read_answers(
-    path: &str,
-    own: &[(String, String)],
-    digits: Option<u32>,
-    rows: &mut Vec<Row>,
-) -> Result<()> {
+fn read_answers(path: &str, wish: &Wish, rows: &mut Vec<Row>) -> Result<()> {
     let unread = |error: &dyn fmt::Display| Error::Usage(format!("{path} could not be read: {error}"));
     let text = std::fs::read(path).map_err(|error| unread(&error))?;
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
@@ -219,16 +210,25 @@ fn read_answers(
         };
         let (student, question) = (field(student, "student")?, field(question, "question")?);
         given.once(student, question, format!("line {line}"))?;
-        let mut parameters: Vec<_> = own.iter().filter(|(name, _)| has(question, name)).cloned().collect();
-        for assignment in variant.and_then(|place| record.get(place)).unwrap_or("").split_whitespace() {
+        let mut parameters: Vec<_> =
+            wish.own.iter().filter(|(name, _)| has(question, name)).cloned().collect();
+        let cell = variant.and_then(|place| record.get(place)).unwrap_or("").trim();
+        let (mut name, mut assignments) = (wish.variant.as_deref(), "");
+        if cell.contains('=') {
+            assignments = cell;
+        } else if !cell.is_empty() {
+            name = Some(cell);
+        }
+        for assignment in assignments.split_whitespace() {
             let Some((name, value)) = assignment.split_once('=') else {
                 return Err(at(format!("the variant \"{assignment}\" is not of the form name=value")));
             };
             parameters.push((name.into(), value.into()));
         }
-        let parameters = super::parameters(question, &parameters).map_err(|error| at(error.to_string()))?;
+        let parameters =
+            super::parameters(question, name, &parameters).map_err(|error| at(error.to_string()))?;
         let text = record.get(answer).unwrap_or("");
-        rows.push(judged(student, question, text, &parameters, digits));
+        rows.push(judged(student, question, text, &parameters, wish.digits));
     }
     Ok(())
 }

@@ -119,7 +119,7 @@ impl Wish {
             Deed::Draws(sources) => self.judge_draws(sources)?,
             Deed::Mine => self.judge_mine(mine)?,
             Deed::Class { answers, draws } => {
-                let report = class::Report::of(answers.as_deref(), draws.as_deref(), &self.own, self.digits)?;
+                let report = class::Report::of(answers.as_deref(), draws.as_deref(), self)?;
                 let text = match (self.json, self.csv) {
                     (true, _) => report.json(),
                     (_, true) => report.csv()?,
@@ -196,7 +196,7 @@ impl Wish {
 
     fn judge_answer(&self, text: &str) -> Result<(String, Verdict)> {
         let (_, number) = by_hand::asked(&self.question)?;
-        let parameters = parameters(&self.question, &self.own)?;
+        let parameters = parameters(&self.question, self.variant.as_deref(), &self.own)?;
         let (judgement, ratio) = by_hand::judged(&self.question, text, &parameters, self.digits)?;
         let verdict = match &judgement {
             Judgement::Right => Verdict::Right,
@@ -286,12 +286,15 @@ fn candidate_json(candidate: &Candidate) -> Value {
     })
 }
 
-/// The question's own parameters, those given by name in place of the sheet's.
-fn parameters(question: &str, given: &[(String, String)]) -> Result<Options> {
-    let mut parameters = Options::default();
+/// The question's own parameters, those given by name in place of the variant's or the sheet's.
+fn parameters(question: &str, variant: Option<&str>, given: &[(String, String)]) -> Result<Options> {
     // one that has no number is told so where it is judged
     let id = question.split('(').next().unwrap_or_default().trim();
     let question = super::question(id)?;
+    let mut parameters = Options::default();
+    if let Some(name) = variant {
+        parameters = parameters.variant(name, [question])?;
+    }
     for (name, value) in given {
         parameters.set(question, name, value)?;
     }

@@ -25,6 +25,7 @@ pub(super) struct Wish {
     pub question: String,
     pub deed: Deed,
     pub own: Vec<(String, String)>,
+    pub variant: Option<String>,
     pub digits: Option<u32>,
     pub budget: Option<Budget>,
     pub seed: u64,
@@ -43,6 +44,7 @@ impl Wish {
             question: question.into(),
             deed: Deed::Mine,
             own: Vec::new(),
+            variant: None,
             digits: None,
             budget: None,
             seed: 1,
@@ -72,6 +74,7 @@ impl Wish {
                     deeds.push(("--template", Deed::Template(language)));
                 }
                 "answer" => deeds.push(("--answer", Deed::Answer(options::text(&mut line, "--answer")?))),
+                "variant" => wish.variant = Some(options::text(&mut line, "--variant")?),
                 "digits" => wish.digits = Some(options::count(&mut line, "--digits")?.min(15) as u32),
                 "draws-from" => {
                     let files: Vec<_> = line.values().map_err(options::usage)?.collect();
@@ -123,8 +126,9 @@ impl Wish {
                 "--{name} is about a number worked out by hand: it goes with --answer or --answers"
             )));
         }
-        if wish.digits.is_some() && !judged {
-            return Err(Error::Usage("--digits goes with --answer or --answers".into()));
+        let beside = [("digits", wish.digits.is_some()), ("variant", wish.variant.is_some())];
+        if let (false, Some((name, _))) = (judged, beside.iter().find(|(_, given)| *given)) {
+            return Err(Error::Usage(format!("--{name} goes with --answer or --answers")));
         }
         if wish.csv && (wish.json || !matches!(wish.deed, Deed::Class { .. })) {
             return Err(Error::Usage("--csv is a form of the report on a class, and --json another".into()));
@@ -179,6 +183,7 @@ Options
     --answer TEXT        judge this number, fraction or expression: 1.386, 16/125, 2ρ/π
     --digits N           with so many significant digits at least
     --albedo X, …        the question's own parameters, as in its example
+    --variant NAME       or all of those that the variant of this name has
     --probes             describe the question's probes, for people and programs
     --template LANG      a program to begin with: python or cpp
     --draws-from FILE    judge these draws (- for standard input), one a line, or a probe's number

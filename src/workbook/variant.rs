@@ -1,0 +1,180 @@
+//! Numbers of each student's own: a name, any text, chooses the parameters of every question, the same on every machine.
+//!
+//! A variant is fair. Its numbers are short; none hides a mistake (λ = 1, p_rr = ½, a square, L_i = 1); and every wrong
+//! answer is at least 5 % off the right one, and every classic wrong answer at least 5 % off every other.
+
+use super::options::Options;
+use super::{Number, Question, Value, questions};
+use crate::error::{Error, Result};
+use crate::stream::mix;
+
+/// The values that a parameter may have in a variant. What is not listed stays as on the sheet.
+fn values(name: &str) -> &'static [f64] {
+    match name {
+        "rate" => &[0.2, 0.25, 0.3, 0.4, 0.6, 0.75, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0],
+        "u" => &[0.1, 0.15, 0.2, 0.3, 0.35, 0.4, 0.6, 0.65, 0.7, 0.8, 0.85, 0.9, 0.95],
+        "x-low" | "y-low" => &[-4.0, -3.0, -2.5, -1.5, -1.0, -0.5, 0.5, 1.0, 1.5],
+        "x-high" | "y-high" => &[2.0, 2.5, 3.0, 3.5, 4.5, 5.0, 6.0, 7.0],
+        "albedo" => &[0.3, 0.35, 0.4, 0.45, 0.55, 0.6, 0.65, 0.7, 0.75, 0.85, 0.9],
+        "radiance" => &[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 12.0, 15.0, 20.0],
+        "a" => &[0.5, 1.5, 2.0, 2.5, 3.0, 4.0],
+        "width" => &[0.05, 0.15, 0.2, 0.25, 0.3, 0.4],
+        "wall-albedo" => &[0.3, 0.35, 0.4, 0.45, 0.55, 0.6, 0.65, 0.7],
+        "cube-albedo" => &[0.25, 0.55, 0.6, 0.65, 0.75, 0.85, 0.9],
+        "light-half-width" => &[0.3, 0.4, 0.6, 0.7, 0.75, 0.9],
+        "p-rr" => &[0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9],
+        "visibility" => &[0.2, 0.25, 0.3, 0.4, 0.6, 0.7, 0.75],
+        "max-k" => &[4.0, 6.0, 10.0, 12.0],
+        _ => &[],
+    }
+}
+
+/// Tries until one is fair; it takes a few.
+const TRIES: u64 = 10_000;
+
+/// What two answers differ by at least, relatively.
+const APART: f64 = 0.05;
+
+impl Options {
+    /// The parameters of a variant for these questions, and what is set already on top of them.
+    ///
+    /// # Errors
+    /// If the name is empty.
+    ///
+    /// ```
+    /// use unbiased::workbook::{Options, question, questions};
+    ///
+    /// let ada = Options::default().variant("Ada", questions())?;
+    /// let question = question("5.2")?;
+    /// assert_ne!(question.at(&ada)?.statement, question.at(&Options::default())?.statement);
+    /// assert_eq!(question.at(&ada)?, question.at(&Options::default().variant("Ada", questions())?)?);
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    pub fn variant(
+        mut self,
+        name: &str,
+        questions: impl IntoIterator<Item = &'static Question>,
+    ) -> Result<Self> {
+        let name = name.trim();
+        if name.is_empty() {
+            return Err(Error::Usage("a variant needs a name: any text or number".into()));
+        }
+        let mut chosen = Self::default();
+        for question in questions {
+            chosen.choose(question, name)?;
+        }
+        self.put_below(chosen);
+        Ok(self)
+    }
+
+    fn choose(&mut self, question: &'static Question, name: &str) -> Result<()> {
+        let seed = question
+            .id
+            .bytes()
+            .chain([0])
+            .chain(name.bytes())
+            .fold(0, |seed, byte| mix(seed ^ u64::from(byte)));
+        let free = question.parameters.iter().filter(|of| matches!(of.default, Value::Number(_)));
+        let free: Vec<_> =
+            free.map(|of| (of.name, values(of.name))).filter(|(_, all)| !all.is_empty()).collect();
+        for attempt in 0..TRIES {
+            let mut options = Self::default();
+            let mut word = mix(seed ^ mix(attempt));
+            for (parameter, all) in &free {
+                word = mix(word);
+                // fewer than 20 of 2⁶⁴: as good as uniform
+                let value = all.get((word % all.len() as u64) as usize).copied().unwrap_or(f64::NAN);
+                options.set(question, parameter, &value.to_string())?;
+            }
+            if is_fair(question, &options) {
+                self.take_for(question, options);
+                return Ok(());
+            }
+        }
+        Err(Error::Usage(format!("question {} has no fair variant for \"{name}\"", question.id)))
+    }
+}
+
+/// Whether no answer to the question is taken for another, and all of its texts can be written.
+pub(super) fn is_fair(question: &'static Question, options: &Options) -> bool {
+    question.at(options).is_ok()
+        && question.numbers.iter().all(|number| tells_apart(question, number, options))
+}
+
+fn tells_apart(question: &'static Question, number: &Number, options: &Options) -> bool {
+    let values = |formula: &str| question.evaluate(formula, options).unwrap_or_default();
+    let truths = values(number.formula);
+    // a right answer of 0 differs from all that is not
+    let differ = |a: f64, b: f64| (a - b).abs() >= APART * a.abs().max(b.abs()) && a != b;
+    let wrong: Vec<_> = number.slips.iter().map(|slip| (slip, values(slip.answer))).collect();
+    let right_is_alone = wrong
+        .iter()
+        .all(|(_, values)| values.iter().all(|value| truths.iter().all(|truth| differ(*value, *truth))));
+    let classic = || wrong.iter().filter(|(slip, _)| slip.classic).enumerate();
+    right_is_alone
+        && classic().all(|(index, (_, values))| {
+            let others = classic().skip(index + 1).flat_map(|(_, (_, others))| others);
+            others.into_iter().all(|other| values.iter().all(|value| differ(*value, *other)))
+        })
+}
+
+/// Names of variants, one a line: blank lines left out.
+///
+/// # Errors
+/// If the text is not UTF-8, there is no name, or two names would be one folder.
+pub(super) fn names(bytes: &[u8], file: &str) -> Result<Vec<String>> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let text =
+        std::str::from_utf8(bytes).map_err(|_| Error::Usage(format!("{file} is not text in UTF-8")))?;
+    let names: Vec<String> =
+        text.lines().map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned).collect();
+    if names.is_empty() {
+        return Err(Error::Usage(format!("{file} holds no names, one a line")));
+    }
+    let mut folders = std::collections::BTreeMap::new();
+    for name in &names {
+        if let Some(other) = folders.insert(folder(name).to_lowercase(), name) {
+            return Err(Error::Usage(format!(
+                "{file}: “{other}” and “{name}” would have one folder; change one of them"
+            )));
+        }
+    }
+    Ok(names)
+}
+
+/// A name as that of a folder on any system.
+pub(super) fn folder(name: &str) -> String {
+    let plain = |c: char| if c.is_alphanumeric() || "-_+ ".contains(c) { c } else { '_' };
+    let folder: String = name.trim().chars().map(plain).take(100).collect();
+    folder.trim().replace(' ', "_")
+}
+
+/// All questions' numbers in a variant: the rows of a key, as question, what and truth.
+pub(super) fn key(options: &Options) -> Result<Vec<[String; 4]>> {
+    let mut rows = Vec::new();
+    for question in questions() {
+        for number in question.numbers {
+            let truths = question.evaluate(number.formula, options)?;
+            let truth = truths.first().copied().unwrap_or(f64::NAN);
+            let id = format!("{}{}", question.id, number.part);
+            rows.push([id, number.asked(), number.formula.into(), crate::numbers::in_a_text(truth)]);
+        }
+    }
+    Ok(rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_and_told_apart() {
+        let read = |bytes: &[u8]| names(bytes, "f").map_err(|error| error.to_string());
+        assert_eq!(read("\u{feff}Ada\r\n\n  Bo Li \n".as_bytes()), Ok(vec!["Ada".into(), "Bo Li".into()]));
+        assert_eq!(read(b"\n \n"), Err("f holds no names, one a line".into()));
+        assert_eq!(read(b"\xff"), Err("f is not text in UTF-8".into()));
+        let twice = "f: “A/B” and “a_b” would have one folder; change one of them";
+        assert_eq!(read(b"A/B\na_b\n"), Err(twice.into()));
+        assert_eq!(folder("../é x"), "___é_x");
+    }
+}
