@@ -35,6 +35,7 @@ mod shards;
 mod terminal;
 mod value;
 
+use std::mem;
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -139,15 +140,20 @@ pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
         let asked = Asked::Questions(&questions);
         let Some(options) = Request::read(asked)?.options(asked)? else { return Ok(()) };
         let options = options.for_question(question);
-        let answer = || {
+        let all = || {
             let answers = answer(&options)?;
             if let Some(shards) = &options.shards {
                 shards.belong_to(&answers)?;
             }
-            print::answers(question, &answers, &options)
+            print::answers(question, &answers, &options)?;
+            if options.both && options.shard.is_none() {
+                for_students(answer, &options).map(|_| ())
+            } else {
+                Ok(())
+            }
         };
         // a shard draws nothing
-        if options.shard.is_some() { answer() } else { options.with_out(answer) }
+        if options.shard.is_some() { all() } else { options.with_out(all) }
     }))
 }
 
@@ -163,7 +169,8 @@ pub fn appendix(example: &str, appendix: AppendixFn) -> ExitCode {
     }))
 }
 
-/// The worksheet's `main`: answers all these questions, and writes `index.html` with all of it and the appendices.
+/// The worksheet's `main`: answers all these questions, and writes `solution.html`, with the appendices as pages beside it, or
+/// `student.html`, or all of them.
 ///
 /// Under `--seconds` an appendix has at most a tenth of a second for each of its many estimators.
 pub fn worksheet(answers: &[(&str, AnswerFn)], appendices: &[(&str, AppendixFn)]) -> ExitCode {
@@ -174,27 +181,60 @@ pub fn worksheet(answers: &[(&str, AnswerFn)], appendices: &[(&str, AppendixFn)]
         let Some(options) = Request::read(all)?.options(all)? else { return Ok(()) };
         options.with_out(|| {
             let mut answered = Vec::new();
+            let mut unanswered = Vec::new();
             for (question, answer) in &asked {
                 let options = options.for_question(question);
                 let rows = answer(&options)?;
                 print::answers(question, &rows, &options)?;
                 answered.push((*question, rows));
+                if options.both {
+                    unanswered.push((*question, for_students(*answer, &options)?));
+                }
             }
-            let mut beside = Vec::new();
-            if options.edition == Edition::Solution {
+            if options.edition == Edition::Student {
+                unanswered = mem::take(&mut answered);
+            }
+            let mut pages = Vec::new();
+            if !unanswered.is_empty() {
+                pages.push(("student.html".to_owned(), page::sheet(&unanswered)?));
+            }
+            if !answered.is_empty() {
+                let mut beside = Vec::new();
                 for (example, appendix) in appendices {
                     let appendix = within_reason(appendix::beside(example)?, *appendix, &options)?;
                     // their numbers for programs are what their own examples give
                     print::appendix(&appendix, !options.json, &options)?;
+                    pages.push((format!("{example}.html"), page::beside(&appendix)));
                     beside.push(appendix);
                 }
+                pages.push(("solution.html".to_owned(), page::key(&answered, &beside, &options)?));
             }
-            let path = options.out.join("index.html");
-            write_whole(&path, page::page(&answered, &beside, &options)?.as_bytes())?;
-            print::page(&path, &options)
+            for (name, page) in pages {
+                let path = options.out.join(name);
+                write_whole(&path, page.as_bytes())?;
+                print::page(&path, &options)?;
+            }
+            Ok(())
         })
     }))
 }
+
+/// What the student's edition has of a question beside the solution: its figures, which are saved. Of its numbers it shows
+/// none, so that a few draws will do.
+fn for_students(answer: AnswerFn, options: &Options) -> Result<Vec<Answer>> {
+    let mut options = options.clone();
+    options.edition = Edition::Student;
+    options.budget = Some(Budget::Draws(FEW));
+    options.shards = None;
+    let rows = answer(&options)?;
+    for figure in rows.iter().flat_map(|row| row.figures(Edition::Student)) {
+        figure.save(&options.out)?;
+    }
+    Ok(rows)
+}
+
+/// Draws of an estimator whose numbers nobody will see.
+const FEW: u64 = 1000;
 
 /// An appendix in the time that it may take beside the questions; its text says so where that is less than what is asked for.
 fn within_reason(beside: &Beside, appendix: AppendixFn, options: &Options) -> Result<Appendix> {

@@ -34,6 +34,8 @@ pub struct Options {
     pub json: bool,
     /// For whom.
     pub edition: Edition,
+    /// Whether the student's edition is made beside the solution.
+    pub(super) both: bool,
     /// Which shard of every run, and of how many. A shard needs no figures.
     pub shard: Option<[u64; 2]>,
     /// The shards of which every run is put together instead.
@@ -51,6 +53,7 @@ impl Default for Options {
             out: PathBuf::from("worksheet"),
             json: false,
             edition: Edition::Solution,
+            both: false,
             shard: None,
             shards: None,
             given: Vec::new(),
@@ -119,7 +122,7 @@ impl Request {
                     let files: Vec<PathBuf> = line.values().map_err(usage)?.map(PathBuf::from).collect();
                     options.shards = Some(Rc::new(Shards::read(&files)?));
                 }
-                "edition" => options.edition = edition(&text(&mut line, "--edition")?)?,
+                "edition" => (options.edition, options.both) = edition(&text(&mut line, "--edition")?)?,
                 _ => {
                     let parameter = parameter(questions.iter().copied(), &name)?;
                     let value = parameter.read(&text(&mut line, &format!("--{name}"))?)?;
@@ -222,11 +225,13 @@ fn shard(given: &str) -> Result<[u64; 2]> {
         .ok_or_else(|| Error::Usage(format!("--shard takes one of 1/N to N/N, not \"{given}\"")))
 }
 
-fn edition(name: &str) -> Result<Edition> {
-    match name {
-        "student" => Ok(Edition::Student),
-        "solution" => Ok(Edition::Solution),
-        _ => Err(Error::Usage(format!("--edition is student or solution, not \"{name}\""))),
+/// The edition, and whether the other one is made, too.
+fn edition(name: &str) -> Result<(Edition, bool)> {
+    match name.to_lowercase().as_str() {
+        "student" => Ok((Edition::Student, false)),
+        "solution" => Ok((Edition::Solution, false)),
+        "both" => Ok((Edition::Solution, true)),
+        _ => Err(Error::Usage(format!("--edition is student, solution or both, not \"{name}\""))),
     }
 }
 

@@ -1,0 +1,39 @@
+//! A question to be answered by hand.
+
+use maud::{Markup, html};
+
+use super::super::{Answer, Question, shown};
+use super::text::prose;
+use crate::figure::Edition;
+
+/// How many ruled lines an answer by hand takes.
+fn lines(id: &str) -> usize {
+    match id {
+        "3.1" => 1,
+        "1.2" | "1.3" | "4.1" | "4.2" | "5.2" => 2,
+        "3.3" | "5.3" => 3,
+        "3.5" | "3.6" | "4.3" => 4,
+        "2.1" | "3.2" | "5.1" => 6,
+        _ => 5,
+    }
+}
+
+/// Whether its figure is to be drawn into, by hand: as large as the paper allows.
+fn drawn_into(id: &str) -> bool {
+    matches!(id, "4.1" | "4.2")
+}
+
+pub(super) fn article(question: &'static Question, answers: &[Answer]) -> Markup {
+    let edition = Edition::Student;
+    let answers = answers.iter().filter(|answer| shown(answer, edition));
+    html! {
+        article id=(super::id_of(question)) {
+            h3 { (question.id) " " (prose(question.title)) }
+            p.statement { (prose(question.statement)) }
+            div.drawing[drawn_into(question.id)] {
+                @for figure in answers.flat_map(|answer| answer.figures(edition)) { (super::shown(figure)) }
+            }
+            div aria-hidden="true" { @for _ in 0..lines(question.id) { div.line {} } }
+        }
+    }
+}
