@@ -32,25 +32,21 @@ pub(super) fn article(question: &'static Question, answers: &[Answer], options: 
     let (command, remark) = options.command(question, answers.iter());
     let rows: Vec<&Answer> = answers.iter().filter(|answer| numbered(answer)).collect();
     let figures: Vec<_> = answers.iter().flat_map(|answer| answer.figures(Edition::Solution)).collect();
-    // two that fit side by side, or else one, are enough on paper
-    let few = if figures.iter().take(2).filter(|figure| narrow(figure)).count() == 2 { 2 } else { 1 };
-    let (first, others) = figures.split_at(few.min(figures.len()));
-    let aside = matches!(first, [figure] if narrow(figure));
+    // one is enough on paper: beside the text, or below where it is as wide
+    let (first, others) = figures.split_at(figures.len().min(1));
+    let (aside, below): (Vec<_>, Vec<_>) = first.iter().partition(|figure| narrow(figure));
     Ok(html! {
         article id=(super::id_of(question)) {
             h3 { (question.id) " " (prose(question.title)) }
             p.statement { em { (prose(question.statement)) } }
-            @if !first.is_empty() {
-                div class=(if aside { "aside" } else { "figures" }) {
-                    @for figure in first { (shown(figure)) }
-                }
-            }
+            @for figure in aside { div.aside { (shown(figure)) } }
             @for formula in &formulas { (formula) }
             p.why { (prose(question.answer)) }
             @for answer in answers.iter().filter(|answer| !numbered(answer)) {
                 @if let Some(sentence) = answer.sentence() { p.why { (prose(sentence)) } }
             }
             @for row in settling(&rows) { (in_a_line(question, row)) }
+            @for figure in below { (shown(figure)) }
             @if !wrong.is_empty() {
                 h4 { "Classic wrong answers" }
                 dl { @for (answer, slip) in &wrong { dt { (prose(answer)) } dd { (prose(slip)) } } }
