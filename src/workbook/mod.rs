@@ -37,6 +37,8 @@ mod terminal;
 mod value;
 mod variant;
 
+use std::mem;
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -149,15 +151,20 @@ pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
         let options = options.for_question(question);
         // a parameter outside its domain is told before anything is run
         question.at(&options)?;
-        let answer = || {
+        let all = || {
             let answers = answer(&options)?;
             if let Some(shards) = &options.shards {
                 shards.belong_to(&answers)?;
             }
-            print::answers(question, &answers, &options)
+            print::answers(question, &answers, &options)?;
+            if options.both && options.shard.is_none() {
+                for_students(answer, &options).map(|_| ())
+            } else {
+                Ok(())
+            }
         };
         // a shard draws nothing
-        if options.shard.is_some() { answer() } else { options.with_out(answer) }
+        if options.shard.is_some() { all() } else { options.with_out(all) }
     }))
 }
 
@@ -173,7 +180,8 @@ pub fn appendix(example: &str, appendix: AppendixFn) -> ExitCode {
     }))
 }
 
-/// The worksheet's `main`: answers all these questions, and writes `index.html` with all of it and the appendices.
+/// The worksheet's `main`: answers all these questions, and writes `solution.html`, with the appendices as pages beside it, or
+/// `student.html`, or all of them.
 ///
 /// Under `--seconds` an appendix has at most a tenth of a second for each of its many estimators.
 pub fn worksheet(answers: &[(&str, AnswerFn)], appendices: &[(&str, AppendixFn)]) -> ExitCode {
@@ -185,29 +193,99 @@ pub fn worksheet(answers: &[(&str, AnswerFn)], appendices: &[(&str, AppendixFn)]
         for question in &questions {
             question.at(&options)?;
         }
-        options.with_out(|| {
-            let mut answered = Vec::new();
-            for (question, answer) in &asked {
-                let options = options.for_question(question);
-                let rows = answer(&options)?;
-                print::answers(question, &rows, &options)?;
-                answered.push((*question, rows));
-            }
-            let mut beside = Vec::new();
-            if options.edition == Edition::Solution {
-                for (example, appendix) in appendices {
-                    let appendix = within_reason(appendix::beside(example)?, *appendix, &options)?;
-                    // their numbers for programs are what their own examples give
-                    print::appendix(&appendix, !options.json, &options)?;
-                    beside.push(appendix);
-                }
-            }
-            let path = options.out.join("index.html");
-            write_whole(&path, page::page(&answered, &beside, &options)?.as_bytes())?;
-            print::page(&path, &options)
-        })
+        match &options.variants {
+            None => options.with_out(|| one_worksheet(&asked, appendices, &options)),
+            Some(file) => options.with_out(|| one_for_each(file, &asked, &options)),
+        }
     }))
 }
+
+/// The pages, and the key with the appendices' pages.
+fn one_worksheet(
+    asked: &[(&'static Question, AnswerFn)],
+    appendices: &[(&str, AppendixFn)],
+    options: &Options,
+) -> Result<()> {
+    let mut answered = Vec::new();
+    let mut unanswered = Vec::new();
+    for (question, answer) in asked {
+        let options = options.for_question(question);
+        let rows = answer(&options)?;
+        print::answers(question, &rows, &options)?;
+        answered.push((*question, rows));
+        if options.both {
+            unanswered.push((*question, for_students(*answer, &options)?));
+        }
+    }
+    if options.edition == Edition::Student {
+        unanswered = mem::take(&mut answered);
+    }
+    let mut pages = Vec::new();
+    if !unanswered.is_empty() {
+        pages.push(("student.html".to_owned(), page::sheet(&unanswered, options)?));
+    }
+    if !answered.is_empty() {
+        let mut beside = Vec::new();
+        for (example, appendix) in appendices {
+            let appendix = within_reason(appendix::beside(example)?, *appendix, options)?;
+            // their numbers for programs are what their own examples give
+            print::appendix(&appendix, !options.json, options)?;
+            pages.push((format!("{example}.html"), page::beside(&appendix)));
+            beside.push(appendix);
+        }
+        pages.push(("solution.html".to_owned(), page::key(&answered, &beside, options)?));
+    }
+    for (name, page) in pages {
+        let path = options.out.join(name);
+        write_whole(&path, page.as_bytes())?;
+        print::page(&path, options)?;
+    }
+    Ok(())
+}
+
+/// A folder of pages for each name in a file, and one key for all of them.
+fn one_for_each(file: &Path, asked: &[(&'static Question, AnswerFn)], options: &Options) -> Result<()> {
+    let shown = file.display().to_string();
+    let bytes =
+        std::fs::read(file).map_err(|error| Error::Usage(format!("{shown} could not be read: {error}")))?;
+    let names = variant::names(&bytes, &shown)?;
+    let failed = |error: String| Error::Write { path: "the key".into(), reason: error };
+    let mut key = csv::Writer::from_writer(Vec::new());
+    key.write_record(["name", "question", "asked for", "formula", "answer"])
+        .map_err(|error| failed(error.to_string()))?;
+    for name in &names {
+        let mut own = options.clone().variant(name, asked.iter().map(|(question, _)| *question))?;
+        own.out = options.out.join(variant::folder(name));
+        own.quiet = true;
+        own.with_out(|| one_worksheet(asked, &[], &own))?;
+        print::line(&format!("{name}: {}", own.out.display()))?;
+        for [question, what, formula, truth] in variant::key(&own)? {
+            key.write_record([name, &question, &what, &formula, &truth])
+                .map_err(|error| failed(error.to_string()))?;
+        }
+    }
+    let bytes = key.into_inner().map_err(|error| failed(error.to_string()))?;
+    let path = options.out.join("key.csv");
+    write_whole(&path, &bytes)?;
+    print::line(&format!("The key of all: {}", path.display()))
+}
+
+/// What the student's edition has of a question beside the solution: its figures, which are saved. Of its numbers it shows
+/// none, so that a few draws will do.
+fn for_students(answer: AnswerFn, options: &Options) -> Result<Vec<Answer>> {
+    let mut options = options.clone();
+    options.edition = Edition::Student;
+    options.budget = Some(Budget::Draws(FEW));
+    options.shards = None;
+    let rows = answer(&options)?;
+    for figure in rows.iter().flat_map(|row| row.figures(Edition::Student)) {
+        figure.save(&options.out)?;
+    }
+    Ok(rows)
+}
+
+/// Draws of an estimator whose numbers nobody will see.
+const FEW: u64 = 1000;
 
 /// An appendix in the time that it may take beside the questions; its text says so where that is less than what is asked for.
 fn within_reason(beside: &Beside, appendix: AppendixFn, options: &Options) -> Result<Appendix> {

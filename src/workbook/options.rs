@@ -34,8 +34,14 @@ pub struct Options {
     pub json: bool,
     /// For whom.
     pub edition: Edition,
+    /// Whether the student's edition is made beside the solution.
+    pub(super) both: bool,
     /// Which shard of every run, and of how many. A shard needs no figures.
     pub shard: Option<[u64; 2]>,
+    /// The file of names that each get a worksheet of their own.
+    pub(super) variants: Option<PathBuf>,
+    /// Nothing is printed but where things are.
+    pub(super) quiet: bool,
     /// The shards of which every run is put together instead.
     pub(super) shards: Option<Rc<Shards>>,
     given: Vec<Given>,
@@ -51,7 +57,10 @@ impl Default for Options {
             out: PathBuf::from("worksheet"),
             json: false,
             edition: Edition::Solution,
+            both: false,
             shard: None,
+            variants: None,
+            quiet: false,
             shards: None,
             given: Vec::new(),
             question: None,
@@ -130,8 +139,9 @@ impl Request {
                     let files: Vec<PathBuf> = line.values().map_err(usage)?.map(PathBuf::from).collect();
                     options.shards = Some(Rc::new(Shards::read(&files)?));
                 }
+                "variants" => options.variants = Some(line.value().map_err(usage)?.into()),
                 "variant" => variant = Some(text(&mut line, "--variant")?),
-                "edition" => options.edition = edition(&text(&mut line, "--edition")?)?,
+                "edition" => (options.edition, options.both) = edition(&text(&mut line, "--edition")?)?,
                 _ => {
                     let (of, own) = match name.rsplit_once('.') {
                         Some((id, own)) => (Some(id), own),
@@ -143,6 +153,11 @@ impl Request {
                     options.given.push(Given { of: of.map(str::to_owned), name: parameter.name, value });
                 }
             }
+        }
+        if options.variants.is_some() && questions.len() == 1 {
+            return Err(Error::Usage(
+                "--variants makes worksheets: it goes with the example worksheet".into(),
+            ));
         }
         if let Some(name) = variant {
             options = options.variant(&name, questions.iter().copied())?;
@@ -246,11 +261,13 @@ fn shard(given: &str) -> Result<[u64; 2]> {
         .ok_or_else(|| Error::Usage(format!("--shard takes one of 1/N to N/N, not \"{given}\"")))
 }
 
-fn edition(name: &str) -> Result<Edition> {
-    match name {
-        "student" => Ok(Edition::Student),
-        "solution" => Ok(Edition::Solution),
-        _ => Err(Error::Usage(format!("--edition is student or solution, not \"{name}\""))),
+/// The edition, and whether the other one is made, too.
+fn edition(name: &str) -> Result<(Edition, bool)> {
+    match name.to_lowercase().as_str() {
+        "student" => Ok((Edition::Student, false)),
+        "solution" => Ok((Edition::Solution, false)),
+        "both" => Ok((Edition::Solution, true)),
+        _ => Err(Error::Usage(format!("--edition is student, solution or both, not \"{name}\""))),
     }
 }
 

@@ -32,6 +32,9 @@ pub(super) fn answers(question: &'static Question, answers: &[Answer], options: 
             rows.push((answer, paths));
         }
     }
+    if options.quiet {
+        return Ok(());
+    }
     let printed = if options.json {
         rows.iter().try_for_each(|(answer, paths)| json(&stated, answer, paths, options))
     } else {
@@ -80,12 +83,17 @@ fn svgs(paths: &[PathBuf]) -> impl Iterator<Item = &PathBuf> {
     paths.iter().filter(|path| path.extension().is_some_and(|ending| ending == "svg"))
 }
 
-/// The last line of the worksheet: where its page is.
+/// A last line of the worksheet: where a page is.
 pub(super) fn page(path: &Path, options: &Options) -> Result<()> {
-    if options.json {
+    if options.json || options.quiet {
         return Ok(());
     }
-    writeln!(io::stdout(), "\nAll of it on one page: {}", path.display()).or_else(until_the_pipe_closes)
+    writeln!(io::stdout(), "\nPage: {}", path.display()).or_else(until_the_pipe_closes)
+}
+
+/// A line for people.
+pub(super) fn line(text: &str) -> Result<()> {
+    writeln!(io::stdout(), "{text}").or_else(until_the_pipe_closes)
 }
 
 /// A reader that has seen enough is no error; a full disk is.
@@ -320,9 +328,11 @@ pub(super) fn help(questions: &[&'static Question]) -> Result<()> {
     --threads T          threads (one a core; for the same draws the results are the same for any number)
     --out DIR            folder for figures and pages (worksheet)
     --json               one JSON object a line
-    --edition NAME       student or solution (solution)
+    --edition NAME       student, solution or both (solution)
     --shard K/N          only shard K of N of every run, for --merge (with --json)
     --merge FILE...      puts every run together from what its shards printed
+    --variant NAME       numbers of a variant's own: any text names one
+    --variants FILE      a worksheet for each name in a file, one a line, and one key (with worksheet)
     --hint               a nudge that does not tell the answer
 ";
     for question in questions {

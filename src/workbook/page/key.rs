@@ -1,0 +1,188 @@
+//! A question with its answer, as the key has it: on paper what settles it, on a screen all rows and figures, too.
+
+use maud::{Markup, html};
+
+use super::super::{Answer, Options, Question, print};
+use super::text::{formula, grouped, prose};
+use super::{narrow, shown};
+use crate::error::Result;
+use crate::figure::Edition;
+use crate::numbers::shortened;
+
+/// What the marks mean.
+pub(super) fn legend(options: &Options) -> Markup {
+    html! {
+        div.legend {
+            p { strong { "✓" } " estimate and exact value agree: they differ by at most four standard errors. "
+                strong { "✗" } " they do not. " strong { "± " } "is a 95 % interval; z is the difference in standard errors." }
+            p { strong { (FOR_SHOW) } " a row that is wrong on purpose, to show what a mistake does, or whose variance is "
+                "infinite, so that its error bar means nothing. Neither is checked, and neither gets a mark." }
+            p { "All random numbers come from seed " (options.seed) "." }
+        }
+    }
+}
+
+/// Instead of a mark.
+const FOR_SHOW: &str = "for show";
+
+pub(super) fn article(question: &'static Question, answers: &[Answer], options: &Options) -> Result<Markup> {
+    let options = options.for_question(question);
+    let stated = question.at(&options)?;
+    let formulas = stated.latex.iter().map(|latex| formula(latex)).collect::<Result<Vec<_>>>()?;
+    let (command, remark) = options.command(question, answers.iter());
+    let rows: Vec<&Answer> = answers.iter().filter(|answer| numbered(answer)).collect();
+    let figures: Vec<_> = answers.iter().flat_map(|answer| answer.figures(Edition::Solution)).collect();
+    // one is enough on paper: beside the text, or below where it is as wide
+    let (first, others) = figures.split_at(figures.len().min(1));
+    let (aside, below): (Vec<_>, Vec<_>) = first.iter().partition(|figure| narrow(figure));
+    Ok(html! {
+        article id=(super::id_of(question)) {
+            h3 { (question.id) " " (prose(&stated.title)) }
+            p.statement { em { (prose(&stated.statement)) } }
+            @for figure in aside { div.aside { (shown(figure)) } }
+            @for formula in &formulas { (formula) }
+            p.why { (prose(&stated.answer)) }
+            @for answer in answers.iter().filter(|answer| !numbered(answer)) {
+                @if let Some(sentence) = answer.sentence() { p.why { (prose(sentence)) } }
+            }
+            @for row in settling(&rows) { (in_a_line(question, row)) }
+            @for figure in below { (shown(figure)) }
+            @if !stated.wrong.is_empty() {
+                h4 { "Classic wrong answers" }
+                dl { @for (answer, slip) in &stated.wrong { dt { (prose(answer)) } dd { (prose(slip)) } } }
+            }
+            @if let Some(note) = &stated.on_the_original {
+                p.original { strong { "On the original sheet. " } (prose(note)) }
+            }
+            details {
+                summary { (all_of_it(rows.len(), others.len())) }
+                @if !rows.is_empty() { (table(question, &rows, &options)) }
+                @for answer in &rows {
+                    @if let Some(sentence) = print::cut_short(answer) { p { (answer.what()) ": " (sentence) } }
+                    @if let Some(sentence) = answer.sentence() { p { (prose(sentence)) } }
+                }
+                div.figures { @for figure in others { (shown(figure)) } }
+                p.command { code { (command) } @if let Some(remark) = remark { " " (remark) } }
+            }
+        }
+    })
+}
+
+/// Whether it is a row of numbers.
+fn numbered(answer: &Answer) -> bool {
+    answer.found().is_some() || answer.exact().is_some()
+}
+
+/// For each part of the question the first row that is checked.
+fn settling<'a>(rows: &[&'a Answer]) -> Vec<&'a Answer> {
+    let mut settling: Vec<&Answer> = Vec::new();
+    for row in rows.iter().filter(|row| row.kind() == super::super::Kind::Answer) {
+        if settling.iter().all(|before| before.question() != row.question()) {
+            settling.push(row);
+        }
+    }
+    settling
+}
+
+/// A row in words: `(i) P(N = 0): exactly 0.2, estimated 0.20002 ± 0.00078 ✓`
+fn in_a_line(question: &Question, row: &Answer) -> Markup {
+    html! {
+        p.check {
+            (part(question, row)) (prose(row.what())) ": "
+            @if let Some(truth) = row.exact() { "exactly " (shortened(truth)) }
+            @if row.estimate().is_some() {
+                @if row.exact().is_some() { ", " }
+                "estimated " (print::interval(row)) " " (mark(row))
+            } @else if let (None, Some(value)) = (row.exact(), row.found()) { (shortened(value)) }
+        }
+    }
+}
+
+/// `(i) ` of a row of 5.1(i)
+fn part(question: &Question, row: &Answer) -> String {
+    match row.question().strip_prefix(question.id) {
+        Some("") | None => String::new(),
+        Some(part) => format!("{part} "),
+    }
+}
+
+fn all_of_it(rows: usize, figures: usize) -> String {
+    let count = |count: usize, one: &str| match count {
+        0 => None,
+        1 => Some(format!("1 {one}")),
+        _ => Some(format!("{count} {one}s")),
+    };
+    let counts = [count(rows, "row"), count(figures, "further figure")];
+    let counts: Vec<String> = counts.into_iter().flatten().chain(["how to run it".into()]).collect();
+    format!("In full: {}", counts.join(", "))
+}
+
+/// All rows.
+fn table(question: &Question, rows: &[&Answer], options: &Options) -> Markup {
+    let varied = options.varied(rows.iter().copied());
+    html! {
+        table {
+            caption { "Question " (question.id) ", every row" }
+            thead { tr {
+                @for name in ["what", "exact value", "estimate ± 95 %", "z", "draws", "verdict"] {
+                    th scope="col" { (name) }
+                }
+            } }
+            tbody { @for row in rows { tr {
+                th scope="row" {
+                    (part(question, row)) (prose(row.what()))
+                    @for (name, value) in row.parameters().iter().filter(|(name, _)| varied.contains(name)) {
+                        ", " (prose(name)) " = " (value.shortened())
+                    }
+                }
+                td.number data-name="exact value" { @if let Some(truth) = row.exact() { (shortened(truth)) } }
+                td.number data-name="estimate ± 95 %" {
+                    @if row.estimate().is_some() { (print::interval(row)) }
+                    @else if let Some(value) = row.found() { (shortened(value)) }
+                }
+                td.number data-name="z" { @if !row.too_few_draws() { @if let Some(z) = row.z() { (of_z(z)) } } }
+                td.number data-name="draws" {
+                    @if let Some(estimate) = row.estimate() { (grouped(estimate.draws())) }
+                }
+                td data-name="verdict" { (mark(row)) }
+            } } }
+        }
+    }
+}
+
+/// A number of standard errors, to two places where they say anything.
+fn of_z(z: f64) -> String {
+    match z.abs() {
+        far if far.is_infinite() => "beyond all error".into(),
+        far if far >= 100.0 => format!("{z:.0}").replace('-', "−"),
+        _ => format!("{z:.2}").replace('-', "−"),
+    }
+}
+
+fn mark(row: &Answer) -> &'static str {
+    match row.agrees() {
+        Some(true) => "✓",
+        Some(false) => "✗",
+        None if row.too_few_draws() => print::TOO_FEW,
+        None if row.kind() == super::super::Kind::Demonstration => FOR_SHOW,
+        None => "",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn far_off_is_far_off() {
+        let shown = [-0.004, 3.146, -793.23, f64::INFINITY].map(of_z);
+        assert_eq!(shown, ["−0.00", "3.15", "−793", "beyond all error"]);
+    }
+
+    #[test]
+    fn what_is_folded_away_is_counted() {
+        assert_eq!(all_of_it(8, 1), "In full: 8 rows, 1 further figure, how to run it");
+        assert_eq!(all_of_it(0, 2), "In full: 2 further figures, how to run it");
+        assert_eq!(all_of_it(1, 0), "In full: 1 row, how to run it");
+    }
+}

@@ -1,0 +1,176 @@
+//! The worksheet as pages, self-contained each: the sheet to be filled in, its answer key, and what stands beside them.
+
+mod key;
+mod sheet;
+mod text;
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::{Answer, Appendix, Options, Question};
+use crate::error::Result;
+use crate::figure::Figure;
+use text::prose;
+
+/// The questions with their answers, in order.
+type Answered = [(&'static Question, Vec<Answer>)];
+
+const TITLE: &str = "Monte Carlo and global illumination";
+const STYLE: &str = include_str!("style.css");
+
+/// `student.html`: the questions, and room for answers by hand.
+pub(super) fn sheet(answered: &Answered, options: &Options) -> Result<String> {
+    Ok(whole(
+        "sheet",
+        &format!("{TITLE} — worksheet"),
+        &html! {
+            header {
+                h1 { (TITLE) " — worksheet" }
+                p.fill { span { "Name" } span { "Date" } }
+            }
+            (questions(answered, options)?)
+            main { (by_section(answered, |question, answers| sheet::article(question, answers, options))?) }
+        },
+    ))
+}
+
+/// `solution.html`: the answer key, with links to the pages beside it.
+pub(super) fn key(answered: &Answered, appendices: &[Appendix], options: &Options) -> Result<String> {
+    Ok(whole(
+        "key",
+        &format!("{TITLE} — answer key"),
+        &html! {
+            header {
+                h1 { (TITLE) " — answer key" }
+                (key::legend(options))
+            }
+            (questions(answered, options)?)
+            @if !appendices.is_empty() {
+                nav aria-label="Beside the questions" {
+                    h2 { "Beside the questions" }
+                    ul { @for appendix in appendices {
+                        li { a href={ (appendix.example) ".html" } { (appendix.title) } }
+                    } }
+                }
+            }
+            main { (by_section(answered, |question, answers| key::article(question, answers, options))?) }
+            footer { p { "Made by " code { "cargo run --release --example worksheet" } ", crate unbiased "
+                (env!("CARGO_PKG_VERSION")) "." } }
+        },
+    ))
+}
+
+/// `trade.html`, `extremes.html`: what stands beside the questions, a page each.
+pub(super) fn beside(appendix: &Appendix) -> String {
+    whole(
+        "beside",
+        appendix.title,
+        &html! {
+            header { h1 { (appendix.title) } }
+            nav aria-label="Back" { a href="solution.html" { "The answer key" } }
+            main {
+                p { (prose(&appendix.text)) }
+                @for table in &appendix.tables { (aligned(table)) }
+                @for figure in &appendix.figures { (shown(figure)) }
+            }
+            footer { p.command { code { "cargo run --release --example " (appendix.example) } } }
+        },
+    )
+}
+
+/// A page: no script, nothing loaded from elsewhere.
+fn whole(class: &str, title: &str, body: &Markup) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body class=(class) { (body) }
+        }
+    };
+    page.into_string()
+}
+
+/// Links to all questions.
+fn questions(answered: &Answered, options: &Options) -> Result<Markup> {
+    let title =
+        |(question, _): &(&'static Question, Vec<Answer>)| Ok((*question, question.at(options)?.title));
+    let titles = answered.iter().map(title).collect::<Result<Vec<_>>>()?;
+    Ok(html! {
+        nav aria-label="Questions" {
+            ul { @for (question, title) in &titles {
+                li { a href={ "#" (id_of(question)) } { (question.id) " " (prose(title)) } }
+            } }
+        }
+    })
+}
+
+/// A name that HTML, CSS and XML all take.
+fn id_of(question: &Question) -> String {
+    format!("q-{}", question.id.replace('.', "-"))
+}
+
+/// The articles under the headings of their sections.
+fn by_section(
+    answered: &Answered,
+    article: impl Fn(&'static Question, &[Answer]) -> Result<Markup>,
+) -> Result<Markup> {
+    let mut articles = String::new();
+    let mut section = None;
+    for (question, answers) in answered {
+        let number = question.id.split('.').next();
+        if number != section {
+            section = number;
+            articles += &html! { h2 { (heading(number.unwrap_or_default())) } }.into_string();
+        }
+        articles += &article(question, answers)?.into_string();
+    }
+    Ok(PreEscaped(articles))
+}
+
+fn heading(section: &str) -> String {
+    let name = match section {
+        "1" => "The inversion method",
+        "2" => "Unbiased estimators",
+        "3" => "The diffuse cube",
+        "4" => "Paths",
+        "5" => "Russian roulette",
+        _ => "",
+    };
+    format!("{section} {name}")
+}
+
+/// A figure with its title, its ids made names of their own on the page.
+fn shown(figure: &Figure) -> Markup {
+    let name = figure.name();
+    let svg = figure.svg().replace(&format!("\"{name}-"), &format!("\"figure-{name}-"));
+    let svg = svg.replace(&format!(" {name}-desc\""), &format!(" figure-{name}-desc\""));
+    html! { figure class=(if narrow(figure) { "narrow" } else { "full" }) {
+        (PreEscaped(svg)) figcaption { (prose(figure.title())) }
+    } }
+}
+
+/// Whether two of them fit side by side.
+fn narrow(figure: &Figure) -> bool {
+    let width = figure.svg().split(" width=\"").nth(1).and_then(|rest| rest.split("mm\"").next());
+    width.and_then(|width| width.parse().ok()).is_some_and(|width: f64| width < 100.0)
+}
+
+/// A table of plain text.
+fn aligned(table: &super::Table) -> Markup {
+    html! {
+        table.many[table.columns.len() > 6] {
+            caption { (table.caption) }
+            thead { tr { @for name in &table.columns { th scope="col" { (name) } } } }
+            tbody { @for row in &table.rows { tr {
+                @for (index, (cell, name)) in row.iter().zip(&table.columns).enumerate() {
+                    @if index == 0 { th scope="row" { (prose(cell)) } }
+                    @else { td data-name=(name) { (prose(cell)) } }
+                }
+            } } }
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! Plain text, counts and LaTeX as HTML.
+
+use maud::{Markup, PreEscaped, html};
+use pulldown_latex::{Parser, RenderConfig, Storage, push_mathml};
+
+use crate::error::{Error, Result};
+
+/// Plain text with its x_i as subscripts, and its x^n and x^(…) as superscripts.
+pub(super) fn prose(text: &str) -> Markup {
+    let mut html = String::new();
+    let mut rest = text;
+    while let Some(at) = rest.find(['_', '^']) {
+        let (before, mark) = rest.split_at(at);
+        html += &escaped(before);
+        let after = mark.get(1..).unwrap_or_default();
+        if mark.starts_with('_') && ends_in_a_name(before) {
+            html.push('_');
+            rest = after;
+            continue;
+        }
+        let tag = if mark.starts_with('_') { "sub" } else { "sup" };
+        let (shifted, left) = match after.strip_prefix('(').and_then(|inside| inside.split_once(')')) {
+            Some(parts) if tag == "sup" => parts,
+            _ => after.split_at(after.find(|c| !shifts(c)).unwrap_or(after.len())),
+        };
+        html += &format!("<{tag}>{}</{tag}>", escaped(shifted));
+        rest = left;
+    }
+    PreEscaped(html + &escaped(rest))
+}
+
+/// Whether it is shifted with the mark before it: ², which is numeric, has a place of its own.
+fn shifts(c: char) -> bool {
+    c.is_alphabetic() || c.is_ascii_digit()
+}
+
+/// Whether a `_` after this stands in a name of a program's, such as `ln_1p`: a letter with a subscript stands alone.
+fn ends_in_a_name(before: &str) -> bool {
+    let reversed = || before.chars().rev();
+    let letters = reversed().take_while(char::is_ascii_alphabetic).count();
+    letters > 1 && reversed().nth(letters).is_none_or(|c| !c.is_alphabetic())
+}
+
+fn escaped(text: &str) -> String {
+    html! { (text) }.into_string()
+}
+
+/// Digits in threes.
+pub(super) fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let thirds = digits.bytes().enumerate().map(|(i, digit)| {
+        let gap = if i > 0 && (digits.len() - i).is_multiple_of(3) { "\u{202f}" } else { "" };
+        format!("{gap}{}", char::from(digit))
+    });
+    thirds.collect()
+}
+
+/// A displayed formula, which may break where `\quad` parts it and before each =.
+pub(super) fn formula(latex: &str) -> Result<Markup> {
+    let mut parts = Vec::new();
+    for part in pieces(latex, Cut::Quads) {
+        let pieces = pieces(&part, Cut::Relations);
+        parts.push(pieces.iter().map(|piece| mathml(piece)).collect::<Result<Vec<_>>>()?);
+    }
+    Ok(html! {
+        div.formula {
+            @for part in &parts {
+                span.part { @for piece in part { (PreEscaped(piece)) " " } } " "
+            }
+        }
+    })
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Cut {
+    Quads,
+    Relations,
+}
+
+/// What comes before a relation begins a line; `{}` gives it the space of one that stands between two.
+const RELATIONS: [&str; 7] = ["=", r"\approx", r"\to", r"\xrightarrow", r"\propto", r"\le", r"\ge"];
+
+/// LaTeX in pieces, cut outside of all brackets.
+fn pieces(latex: &str, cut: Cut) -> Vec<String> {
+    let mut pieces = vec![String::new()];
+    let mut depth = 0i32;
+    let mut rest = latex;
+    while let Some(first) = rest.chars().next() {
+        let length = match rest.strip_prefix('\\') {
+            None => first.len_utf8(),
+            Some(name) => match name.find(|c: char| !c.is_ascii_alphabetic()) {
+                Some(0) => 1 + name.chars().next().map_or(0, char::len_utf8),
+                Some(end) => 1 + end,
+                None => rest.len(),
+            },
+        };
+        let (token, after) = rest.split_at(length);
+        match token {
+            "{" | "(" | "[" | r"\{" | r"\lVert" => depth += 1,
+            "}" | ")" | "]" | r"\}" | r"\rVert" => depth -= 1,
+            _ => {}
+        }
+        let outside = depth == 0;
+        if outside && cut == Cut::Quads && [r"\quad", r"\qquad"].contains(&token) {
+            pieces.push(String::new());
+        } else {
+            if outside && cut == Cut::Relations && RELATIONS.contains(&token) {
+                pieces.push("{} ".into());
+            }
+            if let Some(piece) = pieces.last_mut() {
+                piece.push_str(token);
+            }
+        }
+        rest = after;
+    }
+    pieces.retain(|piece| !piece.trim().is_empty());
+    pieces
+}
+
+fn mathml(latex: &str) -> Result<String> {
+    let storage = Storage::new();
+    let failed = |reason: String| Error::Draft { what: format!("the formula {latex}"), reason };
+    // pulldown-latex puts errors into its output; they are looked for first
+    if let Some(Err(error)) = Parser::new(latex, &storage).find(|event| event.is_err()) {
+        return Err(failed(error.to_string()));
+    }
+    let mut mathml = String::new();
+    push_mathml(&mut mathml, Parser::new(latex, &storage), RenderConfig::default())
+        .map_err(|error| failed(error.to_string()))?;
+    // a space in LaTeX is written with its & escaped
+    let mathml = mathml.replace("&amp;nbsp;", "\u{a0}");
+    Ok(mathml.replacen("<math display=\"inline\"", "<math displaystyle=\"true\"", 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prose_gets_subscripts_and_superscripts() {
+        for (plain, html) in [
+            ("p_rr = 4/5, L_i < 1", "p<sub>rr</sub> = 4/5, L<sub>i</sub> &lt; 1"),
+            ("λ e^(−λx) dx", "λ e<sup>−λx</sup> dx"),
+            ("cos^a θ", "cos<sup>a</sup> θ"),
+            ("p_rr² (1 − p_rr)", "p<sub>rr</sub>² (1 − p<sub>rr</sub>)"),
+            ("L̂_r, dω_i and ρL_i", "L̂<sub>r</sub>, dω<sub>i</sub> and ρL<sub>i</sub>"),
+            ("ln_1p and −exp_m1", "ln_1p and −exp_m1"),
+            ("no marks", "no marks"),
+            ("at the end_", "at the end_"),
+        ] {
+            assert_eq!(prose(plain).into_string(), html);
+        }
+    }
+
+    #[test]
+    fn counts_are_grouped_in_threes() {
+        assert_eq!(
+            [grouped(7), grouped(1000), grouped(1234567)],
+            ["7", "1\u{202f}000", "1\u{202f}234\u{202f}567"]
+        );
+    }
+
+    #[test]
+    fn every_formula_becomes_mathml() {
+        for question in crate::workbook::questions() {
+            for latex in &question.at(&crate::workbook::Options::default()).unwrap().latex {
+                let html = formula(latex).unwrap().into_string();
+                assert!(html.contains("<math displaystyle=\"true\">") && !html.contains("nbsp"), "{latex}");
+            }
+        }
+        assert!(formula(r"\frac{1}").is_err());
+    }
+
+    #[test]
+    fn formulas_break_outside_of_brackets_only() {
+        assert_eq!(
+            pieces(r"P(N = k) = \frac{a = b}{c}, \qquad x \to y", Cut::Quads),
+            [r"P(N = k) = \frac{a = b}{c}, ", r" x \to y"]
+        );
+        assert_eq!(
+            pieces(r"P(N = k) = \frac{a = b}{c} = 1", Cut::Relations),
+            ["P(N = k) ", r"{} = \frac{a = b}{c} ", "{} = 1"]
+        );
+        assert_eq!(pieces(r"x \leftarrow y", Cut::Relations), [r"x \leftarrow y"]);
+    }
+}
