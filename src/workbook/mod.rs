@@ -1,15 +1,15 @@
 //! The table of questions, the options that all examples share, and how answers are printed, written as JSON and put on a page.
 //!
-//! An example is a function from [`Options`] to [`Answer`]s and a one-line `main`:
+//! An example adds rows to a [`Sheet`], and has a one-line `main`:
 //!
 //! ```no_run
-//! use unbiased::workbook::{self, Answer, Options};
+//! use unbiased::workbook::{self, Sheet};
 //! use unbiased::{Result, inversion::Exponential};
 //!
-//! pub fn answer(options: &Options) -> Result<Vec<Answer>> {
-//!     let exponential = Exponential::new(options.number("rate"))?;
-//!     let outcome = options.run(&exponential, 1_000_000)?;
-//!     Ok(vec![Answer::new("1.1", "mean of X").truth(exponential.mean()).outcome(&outcome)])
+//! pub fn answer(sheet: &mut Sheet) -> Result<()> {
+//!     let exponential = Exponential::new(sheet.number("rate"))?;
+//!     sheet.row("mean of X").truth(exponential.mean()).estimate(&exponential)?;
+//!     Ok(())
 //! }
 //!
 //! fn main() -> std::process::ExitCode {
@@ -32,6 +32,7 @@ mod section3;
 mod section4;
 mod section5;
 mod shards;
+mod sheet;
 mod terminal;
 mod value;
 
@@ -45,6 +46,7 @@ pub use by_hand::{Judgement, Letter, Number, Slip, judge_answer, judge_answer_at
 pub(crate) use check::told_once;
 pub use check::{check_mine, exercise, exercises};
 pub use options::Options;
+pub use sheet::{Row, Sheet};
 pub use value::Value;
 
 use crate::error::{Error, Result};
@@ -53,6 +55,7 @@ use crate::numbers::parseable;
 use crate::run::Budget;
 use appendix::Beside;
 use options::{Asked, Request};
+use sheet::Voice;
 
 /// One question of the worksheet, with all that is known about it before anything is run.
 ///
@@ -129,8 +132,8 @@ pub fn question(id: &str) -> Result<&'static Question> {
         .ok_or_else(|| Error::Usage(format!("there is no question {id}")))
 }
 
-/// What an example does: answers to its question, with the options given.
-pub type AnswerFn = fn(&Options) -> Result<Vec<Answer>>;
+/// What an example does: adds the rows that answer its question.
+pub type AnswerFn = fn(&mut Sheet) -> Result<()>;
 
 /// An example's `main`: reads the command line, answers the question, prints the answers and saves their figures.
 pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
@@ -138,14 +141,7 @@ pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
         let questions = [question];
         let asked = Asked::Questions(&questions);
         let Some(options) = Request::read(asked)?.options(asked)? else { return Ok(()) };
-        let options = options.for_question(question);
-        let answer = || {
-            let answers = answer(&options)?;
-            if let Some(shards) = &options.shards {
-                shards.belong_to(&answers)?;
-            }
-            print::answers(question, &answers, &options)
-        };
+        let answer = || sheet::answered(question, answer, &options, Voice::Full).map(|_| ());
         // a shard draws nothing
         if options.shard.is_some() { answer() } else { options.with_out(answer) }
     }))
@@ -173,24 +169,24 @@ pub fn worksheet(answers: &[(&str, AnswerFn)], appendices: &[(&str, AppendixFn)]
         let all = Asked::Questions(&questions);
         let Some(options) = Request::read(all)?.options(all)? else { return Ok(()) };
         options.with_out(|| {
+            let voice = if options.verbose { Voice::Full } else { Voice::Brief };
             let mut answered = Vec::new();
             for (question, answer) in &asked {
-                let options = options.for_question(question);
-                let rows = answer(&options)?;
-                print::answers(question, &rows, &options)?;
-                answered.push((*question, rows));
+                answered.push((*question, sheet::answered(question, *answer, &options, voice)?));
             }
             let mut beside = Vec::new();
             if options.edition == Edition::Solution {
                 for (example, appendix) in appendices {
+                    print::title(example, "", &options)?;
                     let appendix = within_reason(appendix::beside(example)?, *appendix, &options)?;
                     // their numbers for programs are what their own examples give
-                    print::appendix(&appendix, !options.json, &options)?;
+                    print::appendix(&appendix, options.verbose && !options.json, &options)?;
                     beside.push(appendix);
                 }
             }
             let path = options.out.join("index.html");
             write_whole(&path, page::page(&answered, &beside, &options)?.as_bytes())?;
+            print::summary(&answered, &options)?;
             print::page(&path, &options)
         })
     }))
@@ -227,6 +223,7 @@ fn ended(result: Result<()>) -> ExitCode {
                 Error::Usage(_)
                 | Error::Parts { .. }
                 | Error::Parameter { .. }
+                | Error::Point { .. }
                 | Error::Count { .. }
                 | Error::TooFewDraws { .. } => ExitCode::from(2),
                 _ => ExitCode::FAILURE,

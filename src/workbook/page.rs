@@ -3,6 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use pulldown_latex::{Parser, RenderConfig, Storage, config::DisplayMode, push_mathml};
 
+use super::answer::TOO_FEW;
 use super::{Answer, Appendix, Options, Question, print, shown};
 use crate::error::{Error, Result};
 use crate::figure::Edition;
@@ -101,6 +102,7 @@ fn article(question: &'static Question, answers: &[Answer], options: &Options) -
                 }
                 @for answer in &answers {
                     @if let Some(sentence) = print::cut_short(answer) { p { (answer.what()) ": " (sentence) } }
+                    @if let Some(sentence) = answer.reason() { p { (answer.what()) ": " (prose(&sentence)) } }
                     @if let Some(sentence) = answer.sentence() { p { (prose(sentence)) } }
                 }
             }
@@ -166,7 +168,7 @@ fn numbers(answers: &[&Answer], options: &Options) -> Markup {
                                 @else if let Some(value) = answer.found() { (shortened(value)) }
                             }
                             td.number {
-                                @if answer.too_few_draws() { (print::TOO_FEW) }
+                                @if answer.too_few_draws() { (TOO_FEW) }
                                 @else if let Some(z) = answer.z() { (format!("{z:.2}").replace('-', "−")) }
                                 @match answer.agrees() { Some(true) => " ✓", Some(false) => " ✗", None => "" } }
                             td.number { @if let Some(estimate) = answer.estimate() { (grouped(estimate.draws())) } }
