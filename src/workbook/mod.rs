@@ -6,7 +6,7 @@
 //! use unbiased::workbook::{self, Sheet};
 //! use unbiased::{Result, inversion::Exponential};
 //!
-//! pub fn answer(sheet: &mut Sheet) -> Result<()> {
+//! pub fn answer(sheet: &Sheet) -> Result<()> {
 //!     let exponential = Exponential::new(sheet.number("rate"))?;
 //!     sheet.row("mean of X").truth(exponential.mean()).estimate(&exponential)?;
 //!     Ok(())
@@ -133,7 +133,7 @@ pub fn question(id: &str) -> Result<&'static Question> {
 }
 
 /// What an example does: adds the rows that answer its question.
-pub type AnswerFn = fn(&mut Sheet) -> Result<()>;
+pub type AnswerFn = fn(&Sheet) -> Result<()>;
 
 /// An example's `main`: reads the command line, answers the question, prints the answers and saves their figures.
 pub fn main(id: &str, answer: AnswerFn) -> ExitCode {

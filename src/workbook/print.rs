@@ -84,7 +84,8 @@ pub(super) fn ending(question: &Question, answers: &[Answer], options: &Options,
             text += &labelled("    · ", &format!("{answer}: {slip}"), width());
         }
     }
-    let drawn: String = rows.iter().flat_map(|(_, paths)| svgs(paths)).map(|path| figure_line(path)).collect();
+    let drawn: String =
+        rows.iter().flat_map(|(_, paths)| svgs(paths)).map(|path| figure_line(path)).collect();
     if !drawn.is_empty() {
         text += &format!("\n{drawn}");
     }
@@ -123,7 +124,8 @@ pub(super) fn summary(answered: &[(&Question, Vec<Answer>)], options: &Options) 
         let largest = largest.map_or("–".into(), |z| format!("{z:.2}"));
         let seconds: f64 = rows.iter().filter_map(Answer::seconds).sum();
         let besides = besides(rows);
-        let line = format!("{:<4} {mark}   {of:>10}   {largest:>11}   {seconds:>7.2}   {besides}", question.id);
+        let line =
+            format!("{:<4} {mark}   {of:>10}   {largest:>11}   {seconds:>7.2}   {besides}", question.id);
         text += &format!("{}\n", line.trim_end());
     }
     put(&text)

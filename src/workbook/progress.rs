@@ -10,11 +10,7 @@ use crate::run::Progress;
 
 /// Does work that reports how many draws are done, and how many there will be: from the second second on, a
 /// bar shows them on a terminal. Work that has a `time` of its own has a bar of time.
-pub(super) fn watched<T>(
-    wanted: bool,
-    time: Option<Duration>,
-    work: impl FnOnce(&Progress<'_>) -> T,
-) -> T {
+pub(super) fn watched<T>(wanted: bool, time: Option<Duration>, work: impl FnOnce(&Progress<'_>) -> T) -> T {
     let start = Instant::now();
     let bar = OnceCell::new();
     let shown = wanted && std::io::stderr().is_terminal();

@@ -1,5 +1,7 @@
 //! The sheet that an example fills: a question's rows, one after the other.
 
+use std::cell::{Cell, RefCell};
+
 use super::answer::Words;
 use super::{Answer, AnswerFn, Options, Question, Value, print};
 use crate::box_room::Scene;
@@ -17,9 +19,9 @@ pub struct Sheet {
     question: &'static Question,
     options: Options,
     voice: Voice,
-    rows: Vec<Answer>,
+    rows: RefCell<Vec<Answer>>,
     /// How many of the rows are printed; none before the question is.
-    told: Option<usize>,
+    told: Cell<Option<usize>>,
 }
 
 /// What is printed while a question is answered.
@@ -49,17 +51,18 @@ pub(super) fn answered(
     voice: Voice,
 ) -> Result<Vec<Answer>> {
     let options = options.for_question(question);
-    let mut sheet = Sheet { question, options, voice, rows: Vec::new(), told: None };
+    let sheet = Sheet { question, options, voice, rows: RefCell::default(), told: Cell::new(None) };
     if voice == Voice::Brief {
-        sheet.tell()?;
+        sheet.tell(0)?;
     }
-    answer(&mut sheet)?;
+    answer(&sheet)?;
     if let Some(shards) = sheet.options.shards.as_deref() {
-        shards.belong_to(&sheet.rows)?;
+        shards.belong_to(&sheet.rows.borrow())?;
     }
-    sheet.tell()?;
-    print::ending(question, &sheet.rows, &sheet.options, voice)?;
-    Ok(sheet.rows)
+    sheet.tell(usize::MAX)?;
+    let rows = sheet.rows.into_inner();
+    print::ending(question, &rows, &sheet.options, voice)?;
+    Ok(rows)
 }
 
 impl Sheet {
@@ -92,13 +95,13 @@ impl Sheet {
     }
 
     /// Adds a row about `what`, which does not tell the answer. Its parameters are the question's own.
-    pub fn row(&mut self, what: impl AsRef<str>) -> Row<'_> {
+    pub fn row(&self, what: impl AsRef<str>) -> Row<'_> {
         let mut answer = Answer::new(self.question.id, what.as_ref());
         for (name, value) in self.options.parameters() {
             answer = answer.parameter(name.replace('-', "_"), value);
         }
-        self.rows.push(answer);
-        Row { sheet: self, draws: DRAWS, most_work: false }
+        self.rows.borrow_mut().push(answer);
+        Row { sheet: self, index: self.last(), draws: DRAWS, most_work: false }
     }
 
     /// Adds a figure of the answer to the row before it. It is made where it is shown: not in the student's edition, and
@@ -106,7 +109,7 @@ impl Sheet {
     ///
     /// # Errors
     /// Those of making it.
-    pub fn figure<F: Into<Vec<Figure>>>(&mut self, make: impl FnOnce() -> Result<F>) -> Result<()> {
+    pub fn figure<F: Into<Vec<Figure>>>(&self, make: impl FnOnce() -> Result<F>) -> Result<()> {
         if self.options.edition == Edition::Solution { self.drawing(|_| make()) } else { Ok(()) }
     }
 
@@ -114,41 +117,45 @@ impl Sheet {
     ///
     /// # Errors
     /// Those of making it.
-    pub fn drawing<F: Into<Vec<Figure>>>(&mut self, make: impl FnOnce(Edition) -> Result<F>) -> Result<()> {
+    pub fn drawing<F: Into<Vec<Figure>>>(&self, make: impl FnOnce(Edition) -> Result<F>) -> Result<()> {
         if self.options.shard.is_none() {
-            self.tell_on_the_way()?;
+            self.tell_all_but_the_last()?;
             for figure in make(self.options.edition)?.into() {
-                self.change(|answer| answer.figure(figure));
+                self.change(self.last(), |answer| answer.figure(figure));
             }
         }
         Ok(())
     }
 
-    /// Changes the row that was added last.
-    fn change(&mut self, change: impl FnOnce(Answer) -> Answer) {
-        if let Some(answer) = self.rows.pop() {
-            self.rows.push(change(answer));
+    fn change(&self, index: usize, change: impl FnOnce(Answer) -> Answer) {
+        if let Some(answer) = self.rows.borrow_mut().get_mut(index) {
+            *answer = change(answer.clone());
         }
     }
 
-    /// The same while there is more to come: of shards it is not yet known whether they belong to these rows.
-    fn tell_on_the_way(&mut self) -> Result<()> {
-        if self.options.shards.is_some() { Ok(()) } else { self.tell() }
+    fn last(&self) -> usize {
+        self.rows.borrow().len().saturating_sub(1)
     }
 
-    /// Prints what has been done and is not printed yet, the question before all.
-    fn tell(&mut self) -> Result<()> {
-        if self.told.is_none() {
+    /// Prints the question, before all, and those of the first `done` rows that are not printed yet. Of shards it is not known
+    /// before the end whether they belong to these rows.
+    fn tell(&self, done: usize) -> Result<()> {
+        if self.told.get().is_none() {
             print::heading(self.question, &self.options, self.voice)?;
         }
-        let told = self.told.unwrap_or(0);
+        let told = self.told.get().unwrap_or(0);
         if self.voice == Voice::Full {
-            for answer in self.rows.iter().skip(told) {
+            for answer in self.rows.borrow().iter().take(done).skip(told) {
                 print::row(answer, &self.options)?;
             }
         }
-        self.told = Some(self.rows.len());
+        self.told.set(Some(done.max(told)));
         Ok(())
+    }
+
+    /// The same before the last row is worked on.
+    fn tell_all_but_the_last(&self) -> Result<()> {
+        if self.options.shards.is_some() { Ok(()) } else { self.tell(self.last()) }
     }
 }
 
@@ -160,7 +167,8 @@ impl From<Figure> for Vec<Figure> {
 
 /// A row of a [`Sheet`], to which its number, and what there is to say of it, is added.
 pub struct Row<'s> {
-    sheet: &'s mut Sheet,
+    sheet: &'s Sheet,
+    index: usize,
     draws: u64,
     /// Whether a draw of it takes too long for any number of them.
     most_work: bool,
@@ -168,7 +176,7 @@ pub struct Row<'s> {
 
 impl Row<'_> {
     fn set(self, change: impl FnOnce(Answer) -> Answer) -> Self {
-        self.sheet.change(change);
+        self.sheet.change(self.index, change);
         self
     }
 
@@ -243,10 +251,7 @@ impl Row<'_> {
         if self.sheet.options.edition == Edition::Student || self.most_work {
             return Ok(self);
         }
-        let row = self.sheet.rows.pop();
-        let told = self.sheet.tell_on_the_way();
-        self.sheet.rows.extend(row);
-        told?;
+        self.sheet.tell_all_but_the_last()?;
         let (draws, cut) = match self.sheet.options.budget {
             None if self.sheet.options.shards.is_none() => within_reason(estimator, self.draws),
             _ => (self.draws, None),

@@ -150,7 +150,8 @@ mod tests {
             vec!["one".into(), "1".into(), "2".into(), String::new()],
             vec!["three".into(), "10".into(), "20".into(), "a long remark of its own".into()],
         ];
-        let table = Table { caption: String::new(), columns: vec!["name", "first", "second", "remark"], rows };
+        let table =
+            Table { caption: String::new(), columns: vec!["name", "first", "second", "remark"], rows };
         let narrow = [
             "name   first",
             "one    1",
