@@ -232,7 +232,7 @@ impl Answer {
     pub(super) fn verdict(&self) -> &'static str {
         match (&self.words, self.right()) {
             (Some(Words::WrongOnPurpose(_)), _) => "wrong on purpose",
-            (Some(Words::InfiniteVariance), _) => "infinite variance: not judged",
+            (Some(Words::InfiniteVariance), _) => "infinite variance",
             (Some(Words::Careful(_)), _) => "not judged",
             (Some(Words::LeftOut), _) => "left out",
             (None, Some(true)) => "✓",
@@ -241,6 +241,14 @@ impl Answer {
             (None, None) if self.kind == Kind::Demonstration => "not judged",
             (None, None) if self.found().is_some() && self.truth.is_none() => "no closed form",
             (None, None) => "",
+        }
+    }
+
+    /// The mistake that it makes on purpose.
+    pub(super) fn on_purpose(&self) -> Option<&str> {
+        match &self.words {
+            Some(Words::WrongOnPurpose(why)) => Some(why),
+            _ => None,
         }
     }
 

@@ -109,7 +109,7 @@ pub(super) fn summary(answered: &[(&Question, Vec<Answer>)], options: &Options) 
     if options.json || options.edition == Edition::Student {
         return Ok(());
     }
-    let mut text = String::from("\n          right rows   largest |z|   seconds   besides\n");
+    let mut text = String::from("\n       right rows   largest |z|   seconds   besides\n");
     for (question, rows) in answered {
         let judged: Vec<bool> = rows.iter().filter_map(Answer::right).collect();
         let right = judged.iter().filter(|right| **right).count();
@@ -122,11 +122,9 @@ pub(super) fn summary(answered: &[(&Question, Vec<Answer>)], options: &Options) 
         let judged_by_z = rows.iter().filter(|row| row.agrees().is_some()).filter_map(Answer::z);
         let largest = judged_by_z.map(f64::abs).reduce(f64::max);
         let largest = largest.map_or("–".into(), |z| format!("{z:.2}"));
-        let seconds: f64 = rows.iter().filter_map(Answer::seconds).sum();
-        let besides = besides(rows);
-        let line =
-            format!("{:<4} {mark}   {of:>10}   {largest:>11}   {seconds:>7.2}   {besides}", question.id);
-        text += &format!("{}\n", line.trim_end());
+        let seconds = rows.iter().filter_map(Answer::seconds).fold(0.0, |sum, seconds| sum + seconds);
+        let line = format!("{:<4} {mark} {of:>10}   {largest:>11}   {seconds:>7.2}   ", question.id);
+        text += &labelled(&line, &besides(rows), width());
     }
     put(&text)
 }
@@ -268,20 +266,39 @@ fn solution(answer: &Answer, options: &Options) -> String {
             line += " (95 %)";
         }
         if let Some(z) = answer.z().filter(|z| !answer.too_few_draws() || z.is_finite()) {
-            line += &format!("   z = {z:.2}");
+            line += &format!("   z = {}", z_shown(z));
         }
-        text += &labelled("        estimate ", &format!("{line}   {verdict}"), width);
+        if 17 + line.chars().count() + 3 + verdict.chars().count() < width {
+            line += &format!("   {verdict}");
+        } else {
+            text += &format!("        estimate {line}\n");
+            line = verdict.into();
+        }
+        let label = if line == verdict { " ".repeat(17) } else { "        estimate ".into() };
+        let why = answer.on_purpose().unwrap_or_default();
+        let fits = 17 + line.chars().count() + 2 + why.chars().count() <= width;
+        text += &match (why.is_empty(), fits) {
+            (true, _) => format!("{label}{line}\n"),
+            (_, true) => format!("{label}{line}: {why}\n"),
+            _ => format!("{label}{line}:\n{}", labelled(&" ".repeat(17), why, width)),
+        };
     } else if let Some(value) = answer.found() {
         text += &labelled("        found    ", &format!("{}   {verdict}", shortened(value)), width);
     }
     if options.verbose && answer.estimate().is_some() {
         text += &labelled("        cost     ", &cost(answer), width);
     }
-    let sentences = cut_short(answer).into_iter().chain(answer.reason());
-    for sentence in sentences.chain(answer.sentence().map(str::to_owned)) {
+    let reason = answer.reason().filter(|_| answer.on_purpose().is_none());
+    for sentence in cut_short(answer).into_iter().chain(reason).chain(answer.sentence().map(str::to_owned)) {
         text += &labelled("        ", &sentence, width);
     }
     text
+}
+
+/// Two digits after the point, as long as these mean something.
+fn z_shown(z: f64) -> String {
+    let places = if z.abs() < 100.0 { 2 } else { 0 };
+    format!("{z:.places$}").replace('-', "−")
 }
 
 fn cost(answer: &Answer) -> String {

@@ -43,7 +43,8 @@ pub(super) fn labelled(label: &str, text: &str, width: usize) -> String {
     let blank = label.chars().count();
     let folded = folded(text, width.saturating_sub(blank).max(20));
     let mut lines = String::new();
-    for (index, line) in folded.lines().enumerate() {
+    // a label has a line even where there is nothing to say
+    for (index, line) in folded.split('\n').enumerate() {
         let before = if index == 0 { label.to_owned() } else { " ".repeat(blank) };
         lines += (before + line).trim_end();
         lines.push('\n');
