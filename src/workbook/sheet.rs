@@ -38,7 +38,7 @@ const DRAWS: u64 = 1_000_000;
 
 /// Random numbers, or evaluations where they are more, that a row takes at most unless the command line asks for
 /// draws: some ten seconds of them.
-const MOST_WORK: f64 = 2e9;
+const MOST_WORK: f64 = 1e9;
 
 /// The same for a single draw, which nothing can cut short.
 const MOST_WORK_A_DRAW: f64 = 1e7;

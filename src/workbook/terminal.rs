@@ -81,7 +81,8 @@ pub(super) fn stacked(table: &Table, width: usize) -> Vec<String> {
     let first = length(0);
     let (mut groups, mut long): (Vec<Vec<usize>>, Vec<usize>) = (Vec::new(), Vec::new());
     let mut used = usize::MAX;
-    for column in 1..table.columns.len() {
+    let told = |column: &usize| table.rows.iter().any(|row| !cell(row, *column).is_empty());
+    for column in (1..table.columns.len()).filter(told) {
         let more = 2 + length(column);
         if first + more > width || more > width / 2 {
             long.push(column);
