@@ -1,56 +1,41 @@
 //! Question 3.6: why does cosine-weighted sampling do better than uniform sampling?
 //!
-//! Because its density is closer to the integrand, which has a factor cos θ: the rate 1/√n is the same, the variance of a draw is smaller, and
-//! it is 0 where the two are proportional. It is also larger under some lights. The variance is itself a mean, of (X − L_r)², and is estimated as one.
-
-use std::process::ExitCode;
+//! Because its density is closer to the integrand, which has a factor cos θ: the rate 1/√n is the same, the
+//! variance of a draw is smaller, and it is 0 where the two are proportional. It is also larger under some
+//! lights. The variance is itself a mean, of (X − L_r)², and is estimated as one.
 
 use unbiased::hemisphere::Hemisphere::{self, Cosine, Uniform};
 use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
-use unbiased::workbook::{self, Answer, Options};
+use unbiased::workbook::{self, Row, Sheet};
 use unbiased::{Estimator, Result, figure, from_fn};
 
-/// The answers, as the options ask.
-pub fn answer(options: &Options) -> Result<Vec<Answer>> {
-    let cube = Lambertian::new(options.number("albedo"))?;
-    let ring = RingLight::new(options.number("width"))?;
-    let mut answers = vec![
-        Answer::new("3.6", "variance against the light")
-            .figure(figure::variance_against_exponent(100_000, options.seed)?)
-            .figure(figure::variance_against_ring(400_000, options.seed)?),
-    ];
-    for a in [options.number("a"), 0.0, -0.5] {
-        let sky = CosinePower::new(a)?;
-        for (what, hemisphere) in
-            [("variance, uniform directions", Uniform), ("variance, cosine directions", Cosine)]
+/// Both variances under cos^a θ, and under a ring of light at the horizon.
+pub fn answer(sheet: &Sheet) -> Result<()> {
+    let cube = Lambertian::new(sheet.number("albedo"))?;
+    let ring = RingLight::new(sheet.number("width"))?;
+    let skies = [CosinePower::new(sheet.number("a"))?, CosinePower::new(0.0)?, CosinePower::new(-0.5)?];
+
+    let seed = sheet.seed();
+    sheet.row("variance against the light");
+    sheet.figure(|| figure::variance_against_exponent(100_000, seed))?;
+    sheet.figure(|| figure::variance_against_ring(400_000, seed))?;
+    for sky in skies {
+        // the error bar of a variance takes E[X⁴], finite for a > −5/4 and a > −1/2
+        for (what, density, least) in
+            [("variance, uniform directions", Uniform, -1.25), ("variance, cosine directions", Cosine, -0.5)]
         {
-            let row = Answer::new("3.6", what).parameter("albedo", cube.albedo()).parameter("a", a);
-            // the error bar of a variance takes E[X⁴]: finite for a > −5/4 and a > −1/2
-            let has_error_bar = a > if hemisphere == Uniform { -1.25 } else { -0.5 };
-            let row = if has_error_bar { row } else { row.demonstration() };
-            answers.push(measured(row, cube, sky, hemisphere, options)?);
+            let row = sheet.row(what).parameter("a", sky.a()).infinite_variance_if(sky.a() <= least);
+            measured(row, cube, sky, density)?;
         }
     }
-    for (what, hemisphere) in
-        [("variance, uniform directions, ring", Uniform), ("variance, cosine directions, ring", Cosine)]
-    {
-        let row =
-            Answer::new("3.6", what).parameter("albedo", cube.albedo()).parameter("width", ring.width());
-        answers.push(measured(row, cube, ring, hemisphere, options)?);
-    }
-    Ok(answers)
+    measured(sheet.row("variance, uniform directions, ring"), cube, ring, Uniform)?;
+    measured(sheet.row("variance, cosine directions, ring"), cube, ring, Cosine)
 }
 
-/// The row with its exact variance and the mean of (X − L_r)².
-fn measured(
-    row: Answer,
-    cube: Lambertian,
-    light: impl Light + Copy,
-    hemisphere: Hemisphere,
-    options: &Options,
-) -> Result<Answer> {
+/// The exact variance and the mean of (X − L_r)².
+fn measured(row: Row<'_>, cube: Lambertian, light: impl Light + Copy, density: Hemisphere) -> Result<()> {
     let mean = light.reflected(cube);
-    let draw: Box<dyn Estimator> = match hemisphere {
+    let draw: Box<dyn Estimator> = match density {
         Uniform => Box::new(cube.uniform_estimator(move |w| light.incoming(w))),
         Cosine => Box::new(cube.cosine_estimator(move |w| light.incoming(w))),
     };
@@ -60,10 +45,11 @@ fn measured(
         // a few units in the last place of x are rounding, and no variance
         if deviation.abs() <= 8.0 * f64::EPSILON * x.abs() { 0.0 } else { deviation * deviation }
     });
-    Ok(row.truth(light.variance(cube, hemisphere)).outcome(&options.run(&squared_deviation, 1_000_000)?))
+    row.truth(light.variance(cube, density)).estimate(&squared_deviation)?;
+    Ok(())
 }
 
 #[allow(dead_code)] // the worksheet takes this file in as a module
-fn main() -> ExitCode {
+fn main() -> std::process::ExitCode {
     workbook::main("3.6", answer)
 }

@@ -1,42 +1,36 @@
 //! Question 5.2: with p_rr = 1/5, what is E[N]?
 //!
-//! E[N] = p_rr/(1 − p_rr) = 1/4. Cheap; but light gathered along such paths has an infinite variance where p_rr ≤ ρ²: its estimate is unbiased
-//! and usually too dark.
-
-use std::process::ExitCode;
+//! E[N] = p_rr/(1 − p_rr) = 1/4. Cheap; but light gathered along such paths has an infinite variance where p_rr ≤ ρ²:
+//! its estimate is unbiased and usually too dark.
 
 use unbiased::Result;
 use unbiased::roulette::{LightModel, Roulette};
-use unbiased::workbook::{self, Answer, Options};
+use unbiased::workbook::{self, Sheet};
 
-/// The answers, as the options ask.
-pub fn answer(options: &Options) -> Result<Vec<Answer>> {
-    let p_rr = options.number("p-rr");
-    let roulette = Roulette::new(p_rr)?;
-    let model = LightModel::new(options.number("albedo"), options.number("visibility"))?;
+/// The number of bounces, and the light of so few.
+pub fn answer(sheet: &Sheet) -> Result<()> {
+    let p_rr = sheet.number("p-rr");
+    let law = Roulette::new(p_rr)?.bounces();
+    let model = LightModel::new(sheet.number("albedo"), sheet.number("visibility"))?;
+    let (coin_by_coin, in_one_step) = (law.by_simulation()?, law.by_inversion()?);
     let paths = model.roulette(p_rr)?;
+    let coins = law.mean() + 1.0;
 
-    let row = |what| Answer::new("5.2", what).parameter("p_rr", p_rr);
-    let light = row("light along such paths")
-        .parameter("albedo", model.albedo())
-        .parameter("visibility", model.visibility())
-        .truth(model.mean())
-        .outcome(&options.run(&paths, 1000)?);
-    Ok(vec![
-        row("E[N], coin by coin")
-            .truth(roulette.bounces().mean())
-            .outcome(&options.run(&roulette.bounces().by_simulation()?, 1_000_000)?),
-        row("E[N], in one step")
-            .truth(roulette.bounces().mean())
-            .outcome(&options.run(&roulette.bounces().by_inversion()?, 1_000_000)?),
-        if paths.variance().is_finite() { light } else { light.demonstration().note(INFINITE) },
-    ])
+    sheet.row("E[N], coin by coin").truth(law.mean()).takes(coins).estimate(&coin_by_coin)?;
+    sheet.row("E[N], in one step").truth(law.mean()).estimate(&in_one_step)?;
+    let infinite = paths.variance().is_infinite();
+    let light = sheet.row("light along such paths").truth(model.mean()).infinite_variance_if(infinite);
+    let light = light.draws(1000).takes(coins).estimate(&paths)?;
+    if infinite {
+        light.note(INFINITE);
+    }
+    Ok(())
 }
 
-const INFINITE: &str = "The variance of these paths is infinite, since p_rr ≤ ρ²: the error bar above means nothing. At ρ = 0.8, v = 0.5 and p_rr = 1/5, the 95 % \
-                        intervals of a thousand paths cover the truth less than half of the time, and most estimates are too dark.";
+const INFINITE: &str = "It is infinite since p_rr ≤ ρ². At ρ = 0.8, v = 0.5 and p_rr = 1/5, the 95 % intervals of a thousand \
+                        paths cover the truth less than half of the time, and most estimates are too dark.";
 
 #[allow(dead_code)] // the worksheet takes this file in as a module
-fn main() -> ExitCode {
+fn main() -> std::process::ExitCode {
     workbook::main("5.2", answer)
 }

@@ -1,78 +1,73 @@
 //! Question 5.3: how does a larger p_rr change E[N]?
 //!
-//! E[N] = p_rr/(1 − p_rr) grows without bound. What the bounces cost and buy is seen in a model of light transport that has exact answers:
-//! every vertex sees the light with probability v, reflects ρ of it, and goes on with probability q.
-
-use std::process::ExitCode;
+//! E[N] = p_rr/(1 − p_rr) grows without bound. What the bounces cost and buy is seen in a model of light transport that
+//! has exact answers: every vertex sees the light with probability v, reflects ρ of it, and goes on with p_rr.
 
 use unbiased::placement::sobol;
 use unbiased::roulette::{LightModel, Roulette};
-use unbiased::workbook::{self, Answer, Options};
+use unbiased::workbook::{self, Sheet};
 use unbiased::{Estimator, Result, figure};
 
-/// The answers, as the options ask.
-pub fn answer(options: &Options) -> Result<Vec<Answer>> {
-    let q = options.number("p-rr");
-    let model = LightModel::new(options.number("albedo"), options.number("visibility"))?;
-    let max_k = options.whole_number("max-k")?;
-    let (paths, truncated) = (model.roulette(q)?, model.truncated(max_k)?);
+/// The number of bounces at five p_rr, then the light of paths ended by roulette or cut off.
+pub fn answer(sheet: &Sheet) -> Result<()> {
+    let p_rr = sheet.number("p-rr");
+    let model = LightModel::new(sheet.number("albedo"), sheet.number("visibility"))?;
+    let max_k = sheet.whole_number("max-k")?;
+    let (paths, truncated) = (model.roulette(p_rr)?, model.truncated(max_k)?);
 
-    let mut answers = vec![
-        Answer::new("5.3", "bounces, variance and cost")
-            .figure(figure::mean_bounces(100_000, options.seed)?)
-            .figure(figure::roulette_trade(&model, q)?)
-            .figure(figure::truncation(&model, q, max_k, 200, options.seed)?),
-    ];
+    let seed = sheet.seed();
+    sheet.row("bounces, variance and cost");
+    sheet.figure(|| figure::mean_bounces(100_000, seed))?;
+    sheet.figure(|| figure::roulette_trade(&model, p_rr))?;
+    sheet.figure(|| figure::truncation(&model, p_rr, max_k, 200, seed))?;
     for p_rr in [0.2, 0.5, 0.8, 0.9, 0.99] {
-        let roulette = Roulette::new(p_rr)?;
-        answers.push(
-            Answer::new("5.3", "E[N]")
-                .parameter("p_rr", p_rr)
-                .truth(roulette.bounces().mean())
-                .outcome(&options.run(&roulette.bounces().by_inversion()?, 1_000_000)?),
-        );
+        let law = Roulette::new(p_rr)?.bounces();
+        sheet.row("E[N]").parameter("p_rr", p_rr).truth(law.mean()).estimate(&law.by_inversion()?)?;
     }
-    let row = |what| {
-        Answer::new("5.3", what)
-            .parameter("albedo", model.albedo())
-            .parameter("visibility", model.visibility())
-            .truth(model.mean())
-    };
-    let with_roulette = |what, q: f64, estimator: &dyn Estimator, draws| -> Result<Answer> {
-        let row = row(what).parameter("q", q).outcome(&options.run(estimator, draws)?);
-        Ok(if model.roulette(q)?.variance().is_finite() { row } else { row.demonstration() })
-    };
+
     let ended = "light, paths ended by roulette";
-    answers.push(with_roulette(ended, q, &paths, 1_000_000)?);
-    let placed = sobol(paths, 256)?;
-    answers.push(with_roulette("the same, sets of 256 Sobol points", q, &placed, 4000)?);
+    let with_roulette = |what, p_rr: f64, estimator: &dyn Estimator, draws, note: Option<String>| {
+        let infinite = model.roulette(p_rr)?.variance().is_infinite();
+        let row = sheet.row(what).parameter("p_rr", p_rr).truth(model.mean()).takes(1.0 / (1.0 - p_rr));
+        let row = row.infinite_variance_if(infinite).draws(draws).estimate(estimator)?;
+        note.map(|note| row.note(note));
+        Ok(())
+    };
+    with_roulette(ended, p_rr, &paths, 1_000_000, None)?;
+    with_roulette("the same, sets of 256 Sobol points", p_rr, &sobol(paths, 256)?, 4000, None)?;
     let best = model.optimum();
     if best > 0.0 && best < 1.0 {
         let at_best = model.roulette(best)?;
-        answers.push(with_roulette(ended, best, &at_best, 1_000_000)?.note(format!(
-            "At q* = {best:.4} variance × cost is least: {:.2}, against {:.2} at q = {q}.",
+        let note = format!(
+            "At p_rr = {best:.4} variance × cost is least: {:.2}, against {:.2} at p_rr = {p_rr}.",
             at_best.variance() * at_best.cost(),
             paths.variance() * paths.cost(),
-        )));
+        );
+        with_roulette(ended, best, &at_best, 1_000_000, Some(note))?;
     }
-    let crossing = model.crossing(q, max_k)?;
+    let crossing = model.crossing(p_rr, max_k)?;
     let overtaken = if crossing.is_finite() {
         format!("from about {crossing:.0} vertices on roulette has the smaller error")
     } else {
-        "roulette never has the smaller error at this q, its variance being infinite".to_owned()
+        "roulette never has the smaller error at this p_rr, its variance being infinite".to_owned()
     };
-    let missing = -100.0 * truncated.bias() / model.mean();
-    answers.push(
-        row("light, paths cut off")
-            .demonstration()
-            .parameter("max_k", max_k as f64)
-            .outcome(&options.run(&truncated, 1_000_000)?)
-            .note(format!("Paths cut after k ≤ {max_k} miss {missing:.2} % of the light; {overtaken}.")),
-    );
-    Ok(answers)
+    let missing = match model.mean() {
+        0.0 => "There is no light to miss.".to_owned(),
+        mean => format!(
+            "Paths cut after k ≤ {max_k} miss {:.2} % of the light; {overtaken}.",
+            -100.0 * truncated.bias() / mean
+        ),
+    };
+    sheet
+        .row("light, paths cut off")
+        .truth(model.mean())
+        .wrong_on_purpose("what comes after the last bounce is missing")
+        .note(missing)
+        .estimate(&truncated)?;
+    Ok(())
 }
 
 #[allow(dead_code)] // the worksheet takes this file in as a module
-fn main() -> ExitCode {
+fn main() -> std::process::ExitCode {
     workbook::main("5.3", answer)
 }

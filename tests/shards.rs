@@ -126,7 +126,7 @@ fn the_rows_of_shards_are_those_of_the_whole() {
         let merged = example(name, &[own, &["--json", "--merge"], &files].concat(), &folder);
         let whole = example(name, &[&common[..], &["--json"]].concat(), &folder);
         assert!(rows(&merged) == rows(&whole) && rows(&whole).len() > 1, "{name}");
-        let text = example(name, &[own, &["--merge"], &files].concat(), &folder);
+        let text = example(name, &[own, &["--verbose", "--merge"], &files].concat(), &folder);
         assert!(String::from_utf8_lossy(&text.stdout).contains("5000 draws"), "{name}");
         fs::remove_dir_all(folder.join("worksheet")).unwrap();
         let said = |arguments: &[&str], sentence: &str| {

@@ -1,9 +1,10 @@
 //! One number of an answer.
 
+use std::borrow::Cow;
+
 use serde::Serialize;
 
 use super::Value;
-use crate::box_room::Scene;
 use crate::estimate::Estimate;
 use crate::figure::{Edition, Figure};
 use crate::run::{Cost, Outcome, Part, Shortfall};
@@ -19,13 +20,27 @@ pub enum Kind {
     Demonstration,
 }
 
+/// Why a row is not judged.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Words {
+    /// A classic mistake, in a few words.
+    WrongOnPurpose(String),
+    /// Its error bar means nothing.
+    InfiniteVariance,
+    /// Its error bar may mean nothing, for this reason.
+    Careful(String),
+    /// It was not run.
+    LeftOut,
+}
+
 /// One number that answers (part of) a question, or a sentence where it has none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
     question: String,
     what: String,
     kind: Kind,
-    parameters: Vec<(&'static str, Value)>,
+    words: Option<Words>,
+    parameters: Vec<(Cow<'static, str>, Value)>,
     truth: Option<f64>,
     value: Option<f64>,
     estimate: Option<Estimate>,
@@ -45,6 +60,11 @@ const FEWEST: u64 = 1000;
 /// The same where all draws are alike, and off.
 const FEWEST_ALIKE: u64 = 100_000;
 
+/// Instead of ✓ or ✗.
+pub(super) const TOO_FEW: &str = "too few draws to judge";
+
+const INFINITE: &str = "The mean is finite, the variance is not: this error bar means nothing.";
+
 impl Answer {
     /// An answer to `question`, the sheet's number first ("2.1", "5.1(ii)"), about `what`, which does not tell it.
     pub fn new(question: &str, what: &str) -> Self {
@@ -52,6 +72,7 @@ impl Answer {
             question: question.into(),
             what: what.into(),
             kind: Kind::Answer,
+            words: None,
             parameters: Vec::new(),
             truth: None,
             value: None,
@@ -73,19 +94,26 @@ impl Answer {
         self
     }
 
-    /// A parameter that it was computed with.
-    pub fn parameter(mut self, name: &'static str, value: impl Into<Value>) -> Self {
-        self.parameters.push((name, value.into()));
+    /// The same, with the reason.
+    pub(super) fn not_judged(mut self, words: Words) -> Self {
+        self.words = Some(words);
+        self.demonstration()
+    }
+
+    /// It belongs to this part of its question: "(ii)".
+    pub(super) fn part_of_question(mut self, part: &str) -> Self {
+        self.question += part;
         self
     }
 
-    /// The numbers of the box room that it was computed in.
-    pub fn scene(self, scene: &Scene) -> Self {
-        self.parameter("wall_albedo", scene.wall_albedo)
-            .parameter("cube_albedo", scene.cube_albedo)
-            .parameter("radiance", scene.radiance)
-            .parameter("light_half_width", scene.light_half_width)
-            .parameter("point", scene.point)
+    /// A parameter that it was computed with; of the same name the last one counts.
+    pub fn parameter(mut self, name: impl Into<Cow<'static, str>>, value: impl Into<Value>) -> Self {
+        let (name, value) = (name.into(), value.into());
+        match self.parameters.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, known)) => *known = value,
+            None => self.parameters.push((name, value)),
+        }
+        self
     }
 
     /// The closed form's value.
@@ -128,9 +156,10 @@ impl Answer {
             .parameter("efficiency", rival.efficiency())
     }
 
-    /// A sentence: the answer itself where the question has no number, or a word on this one.
+    /// A sentence: the answer itself where the question has no number, or a word on this one. A second one follows it.
     pub fn note(mut self, note: impl Into<String>) -> Self {
-        self.note = Some(note.into());
+        let note = note.into();
+        self.note = Some(self.note.map_or(note.clone(), |before| format!("{before} {note}")));
         self
     }
 
@@ -191,7 +220,49 @@ impl Answer {
         hidden || estimate.draws() < if all_alike_and_off { FEWEST_ALIKE } else { FEWEST }
     }
 
-    pub(super) fn parameters(&self) -> &[(&'static str, Value)] {
+    /// Whether it is right: as [`agrees`](Self::agrees), or to nine digits where it was found numerically.
+    pub(super) fn right(&self) -> Option<bool> {
+        match (self.value, self.truth, self.kind) {
+            (Some(value), Some(truth), Kind::Answer) => Some((value - truth).abs() <= 1e-9 * truth.abs()),
+            _ => self.agrees(),
+        }
+    }
+
+    /// ✓ or ✗, or in words why neither.
+    pub(super) fn verdict(&self) -> &'static str {
+        match (&self.words, self.right()) {
+            (Some(Words::WrongOnPurpose(_)), _) => "wrong on purpose",
+            (Some(Words::InfiniteVariance), _) => "infinite variance",
+            (Some(Words::Careful(_)), _) => "not judged",
+            (Some(Words::LeftOut), _) => "left out",
+            (None, Some(true)) => "✓",
+            (None, Some(false)) => "✗",
+            (None, None) if self.too_few_draws() => TOO_FEW,
+            (None, None) if self.kind == Kind::Demonstration => "not judged",
+            (None, None) if self.found().is_some() && self.truth.is_none() => "no closed form",
+            (None, None) => "",
+        }
+    }
+
+    /// The mistake that it makes on purpose.
+    pub(super) fn on_purpose(&self) -> Option<&str> {
+        match &self.words {
+            Some(Words::WrongOnPurpose(why)) => Some(why),
+            _ => None,
+        }
+    }
+
+    /// What there is to say of the verdict.
+    pub(super) fn reason(&self) -> Option<String> {
+        match self.words.as_ref()? {
+            Words::WrongOnPurpose(why) => Some(format!("Wrong on purpose: {why}.")),
+            Words::InfiniteVariance => Some(INFINITE.into()),
+            Words::Careful(caution) => Some(format!("Careful: {caution}.")),
+            Words::LeftOut => None,
+        }
+    }
+
+    pub(super) fn parameters(&self) -> &[(Cow<'static, str>, Value)] {
         &self.parameters
     }
 
@@ -238,7 +309,7 @@ impl Answer {
 
 /// A row's parameters as JSON.
 pub(super) fn parameters_of(answer: &Answer) -> serde_json::Map<String, serde_json::Value> {
-    answer.parameters.iter().map(|(name, value)| ((*name).into(), value.json())).collect()
+    answer.parameters.iter().map(|(name, value)| (name.to_string(), value.json())).collect()
 }
 
 #[cfg(test)]

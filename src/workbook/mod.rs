@@ -1,15 +1,15 @@
 //! The table of questions, the options that all examples share, and how answers are printed, written as JSON and put on a page.
 //!
-//! An example is a function from [`Options`] to [`Answer`]s and a one-line `main`:
+//! An example adds rows to a [`Sheet`], and has a one-line `main`:
 //!
 //! ```no_run
-//! use unbiased::workbook::{self, Answer, Options};
+//! use unbiased::workbook::{self, Sheet};
 //! use unbiased::{Result, inversion::Exponential};
 //!
-//! pub fn answer(options: &Options) -> Result<Vec<Answer>> {
-//!     let exponential = Exponential::new(options.number("rate"))?;
-//!     let outcome = options.run(&exponential, 1_000_000)?;
-//!     Ok(vec![Answer::new("1.1", "mean of X").truth(exponential.mean()).outcome(&outcome)])
+//! pub fn answer(sheet: &Sheet) -> Result<()> {
+//!     let exponential = Exponential::new(sheet.number("rate"))?;
+//!     sheet.row("mean of X").truth(exponential.mean()).estimate(&exponential)?;
+//!     Ok(())
 //! }
 //!
 //! fn main() -> std::process::ExitCode {
@@ -32,6 +32,7 @@ mod section3;
 mod section4;
 mod section5;
 mod shards;
+mod sheet;
 mod stated;
 mod terminal;
 mod value;
@@ -49,6 +50,7 @@ pub use by_hand::{Judgement, Number, Slip, judge_answer, judge_answer_at};
 pub(crate) use check::told_once;
 pub use check::{check_mine, exercise, exercises};
 pub use options::Options;
+pub use sheet::{Row, Sheet};
 pub use stated::{Letter, Stated};
 pub use value::Value;
 
@@ -58,6 +60,7 @@ use crate::numbers::parseable;
 use crate::run::Budget;
 use appendix::Beside;
 use options::{Asked, Request};
+use sheet::Voice;
 
 /// One question of the worksheet, with all that is known about it before anything is run.
 ///
@@ -139,8 +142,8 @@ pub fn question(id: &str) -> Result<&'static Question> {
         .ok_or_else(|| Error::Usage(format!("there is no question {id}")))
 }
 
-/// What an example does: answers to its question, with the options given.
-pub type AnswerFn = fn(&Options) -> Result<Vec<Answer>>;
+/// What an example does: adds the rows that answer its question.
+pub type AnswerFn = fn(&Sheet) -> Result<()>;
 
 /// An example's `main`: reads the command line, answers the question, prints the answers and saves their figures.
 pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
@@ -148,20 +151,14 @@ pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
         let questions = [question];
         let asked = Asked::Questions(&questions);
         let Some(options) = Request::read(asked)?.options(asked)? else { return Ok(()) };
-        let options = options.for_question(question);
         // a parameter outside its domain is told before anything is run
         question.at(&options)?;
         let all = || {
-            let answers = answer(&options)?;
-            if let Some(shards) = &options.shards {
-                shards.belong_to(&answers)?;
-            }
-            print::answers(question, &answers, &options)?;
+            sheet::answered(question, answer, &options, Voice::Full)?;
             if options.both && options.shard.is_none() {
-                for_students(answer, &options).map(|_| ())
-            } else {
-                Ok(())
+                for_students(question, answer, &options)?;
             }
+            Ok(())
         };
         // a shard draws nothing
         if options.shard.is_some() { all() } else { options.with_out(all) }
@@ -206,15 +203,13 @@ fn one_worksheet(
     appendices: &[(&str, AppendixFn)],
     options: &Options,
 ) -> Result<()> {
+    let voice = if options.verbose { Voice::Full } else { Voice::Brief };
     let mut answered = Vec::new();
     let mut unanswered = Vec::new();
     for (question, answer) in asked {
-        let options = options.for_question(question);
-        let rows = answer(&options)?;
-        print::answers(question, &rows, &options)?;
-        answered.push((*question, rows));
+        answered.push((*question, sheet::answered(question, *answer, options, voice)?));
         if options.both {
-            unanswered.push((*question, for_students(*answer, &options)?));
+            unanswered.push((*question, for_students(question, *answer, options)?));
         }
     }
     if options.edition == Edition::Student {
@@ -227,14 +222,16 @@ fn one_worksheet(
     if !answered.is_empty() {
         let mut beside = Vec::new();
         for (example, appendix) in appendices {
+            print::title(example, "", options)?;
             let appendix = within_reason(appendix::beside(example)?, *appendix, options)?;
             // their numbers for programs are what their own examples give
-            print::appendix(&appendix, !options.json, options)?;
+            print::appendix(&appendix, options.verbose && !options.json, options)?;
             pages.push((format!("{example}.html"), page::beside(&appendix)));
             beside.push(appendix);
         }
         pages.push(("solution.html".to_owned(), page::key(&answered, &beside, options)?));
     }
+    print::summary(&answered, options)?;
     for (name, page) in pages {
         let path = options.out.join(name);
         write_whole(&path, page.as_bytes())?;
@@ -256,7 +253,7 @@ fn one_for_each(file: &Path, asked: &[(&'static Question, AnswerFn)], options: &
     for name in &names {
         let mut own = options.clone().variant(name, asked.iter().map(|(question, _)| *question))?;
         own.out = options.out.join(variant::folder(name));
-        own.quiet = true;
+        (own.quiet, own.one_figure) = (true, true);
         own.with_out(|| one_worksheet(asked, &[], &own))?;
         print::line(&format!("{name}: {}", own.out.display()))?;
         for [question, what, formula, truth] in variant::key(&own)? {
@@ -270,22 +267,13 @@ fn one_for_each(file: &Path, asked: &[(&'static Question, AnswerFn)], options: &
     print::line(&format!("The key of all: {}", path.display()))
 }
 
-/// What the student's edition has of a question beside the solution: its figures, which are saved. Of its numbers it shows
-/// none, so that a few draws will do.
-fn for_students(answer: AnswerFn, options: &Options) -> Result<Vec<Answer>> {
+/// What the student's edition has of a question beside the solution: its figures, which are saved.
+fn for_students(question: &'static Question, answer: AnswerFn, options: &Options) -> Result<Vec<Answer>> {
     let mut options = options.clone();
     options.edition = Edition::Student;
-    options.budget = Some(Budget::Draws(FEW));
-    options.shards = None;
-    let rows = answer(&options)?;
-    for figure in rows.iter().flat_map(|row| row.figures(Edition::Student)) {
-        figure.save(&options.out)?;
-    }
-    Ok(rows)
+    options.quiet = true;
+    sheet::answered(question, answer, &options, Voice::Brief)
 }
-
-/// Draws of an estimator whose numbers nobody will see.
-const FEW: u64 = 1000;
 
 /// An appendix in the time that it may take beside the questions; its text says so where that is less than what is asked for.
 fn within_reason(beside: &Beside, appendix: AppendixFn, options: &Options) -> Result<Appendix> {
@@ -318,6 +306,7 @@ fn ended(result: Result<()>) -> ExitCode {
                 Error::Usage(_)
                 | Error::Parts { .. }
                 | Error::Parameter { .. }
+                | Error::Point { .. }
                 | Error::Count { .. }
                 | Error::TooFewDraws { .. } => ExitCode::from(2),
                 _ => ExitCode::FAILURE,

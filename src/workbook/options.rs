@@ -1,5 +1,6 @@
 //! The command line that all examples share.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::mem;
 use std::path::PathBuf;
@@ -32,6 +33,8 @@ pub struct Options {
     pub out: PathBuf,
     /// One JSON object a line instead of text.
     pub json: bool,
+    /// What every row took, too, and all rows of a worksheet.
+    pub verbose: bool,
     /// For whom.
     pub edition: Edition,
     /// Whether the student's edition is made beside the solution.
@@ -42,6 +45,8 @@ pub struct Options {
     pub(super) variants: Option<PathBuf>,
     /// Nothing is printed but where things are.
     pub(super) quiet: bool,
+    /// Of a question's figures the first alone is made: the one that a key has on paper.
+    pub(super) one_figure: bool,
     /// The shards of which every run is put together instead.
     pub(super) shards: Option<Rc<Shards>>,
     given: Vec<Given>,
@@ -56,11 +61,13 @@ impl Default for Options {
             threads: None,
             out: PathBuf::from("worksheet"),
             json: false,
+            verbose: false,
             edition: Edition::Solution,
             both: false,
             shard: None,
             variants: None,
             quiet: false,
+            one_figure: false,
             shards: None,
             given: Vec::new(),
             question: None,
@@ -130,6 +137,7 @@ impl Request {
                 "help" => return Ok(Self::Help),
                 "hint" => hint = true,
                 "json" => options.json = true,
+                "verbose" => options.verbose = true,
                 "draws" | "error" | "seconds" => read_budget(&mut line, &name, &mut options.budget)?,
                 "seed" => options.seed = whole(&mut line, "--seed")?,
                 "threads" => options.threads = Some(count(&mut line, "--threads")? as usize),
@@ -226,7 +234,16 @@ pub(super) fn text(line: &mut Parser, name: &str) -> Result<String> {
 
 pub(super) fn whole(line: &mut Parser, name: &str) -> Result<u64> {
     let given = text(line, name)?;
-    given.parse().map_err(|_| Error::Usage(format!("{name} takes a whole number, not \"{given}\"")))
+    whole_of(&given).ok_or_else(|| Error::Usage(format!("{name} takes a whole number, not \"{given}\"")))
+}
+
+/// A whole number, written 1000000, 1_000_000 or 1e6.
+fn whole_of(given: &str) -> Option<u64> {
+    let digits = given.bytes().next().is_some_and(|first| first.is_ascii_digit());
+    let plain = given.replace('_', "");
+    let exact = |number: &f64| number.fract() == 0.0 && (0.0..=9e15).contains(number);
+    let scientific = || plain.parse().ok().filter(exact).map(|number| number as u64);
+    plain.parse().ok().or_else(scientific).filter(|_| digits)
 }
 
 pub(super) fn count(line: &mut Parser, name: &str) -> Result<u64> {
@@ -310,6 +327,12 @@ impl Options {
         given.map(|given| given.value).or_else(|| default().map(|parameter| parameter.default))
     }
 
+    /// The question's own options, with their values.
+    pub(super) fn parameters(&self) -> impl Iterator<Item = (&'static str, Value)> {
+        let parameters = self.question.map_or(&[][..], |question| question.parameters).iter();
+        parameters.filter_map(|parameter| Some((parameter.name, self.value(parameter.name)?)))
+    }
+
     /// The number of the question's own option `name`: as given, or its default. NaN if the question has no such option.
     pub fn number(&self, name: &str) -> f64 {
         match self.value(name) {
@@ -368,7 +391,11 @@ impl Options {
         if let Some(shards) = &self.shards {
             return shards.next();
         }
-        watched(!self.json, |progress| {
+        let time = match self.budget {
+            Some(Budget::Time(time)) => Some(time),
+            _ => None,
+        };
+        watched(!self.json, time, |progress| {
             let mut run = Run::new(self.seed).max_draws(u64::MAX).max_time(MOST_TIME).progress(progress);
             if let Some(threads) = self.threads {
                 run = run.threads(threads);
@@ -398,10 +425,10 @@ impl Options {
 
     /// The names of those parameters that some row has otherwise than the question's options: the others stand in the command
     /// that repeats the answer.
-    pub(super) fn varied<'a>(&self, answers: impl IntoIterator<Item = &'a Answer>) -> Vec<&'static str> {
+    pub(super) fn varied<'a>(&self, answers: impl IntoIterator<Item = &'a Answer>) -> Vec<Cow<'static, str>> {
         let parameters = answers.into_iter().flat_map(Answer::parameters);
         let as_given = |name: &str, value: Value| self.value(&name.replace('_', "-")) == Some(value);
-        parameters.filter(|(name, value)| !as_given(name, *value)).map(|(name, _)| *name).collect()
+        parameters.filter(|(name, value)| !as_given(name, *value)).map(|(name, _)| name.clone()).collect()
     }
 
     /// The question's own options that are not at their defaults: `u = 0.3`.

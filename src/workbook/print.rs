@@ -7,14 +7,57 @@ use serde::Serialize;
 
 use super::answer::parameters_of;
 use super::appendix::Beside;
+use super::sheet::Voice;
+use super::terminal::{command_lines, folded, labelled, stacked, width};
 use super::{Answer, Appendix, Kind, Options, Question, Stated, shown};
 use crate::error::{Error, Result};
 use crate::figure::Edition;
 use crate::numbers::{plus_minus, rounded, shortened};
 use crate::run::Part;
 
-/// Prints the answers to one question and saves their figures.
-pub(super) fn answers(question: &'static Question, answers: &[Answer], options: &Options) -> Result<()> {
+/// Prints the question, before anything is known of its rows.
+pub(super) fn heading(question: &'static Question, options: &Options, voice: Voice) -> Result<()> {
+    let stated = question.at(options)?;
+    if unsaid(options) {
+        return Ok(());
+    }
+    if voice == Voice::Brief {
+        return title(question.id, &stated.title, options);
+    }
+    let mut text = format!("\n{}  {}\n\n", question.id, stated.title);
+    text += &paragraph(&stated.statement);
+    if options.edition == Edition::Solution {
+        text += &format!("\n{}", paragraph(&stated.answer));
+        text += &format!("\n{}", labelled("    closed form  ", &stated.formula, width()));
+        let own = options.own(question);
+        if !own.is_empty() {
+            text += &labelled("    below        ", &format!("{own}, instead of the sheet's"), width());
+        }
+    }
+    put(&text)
+}
+
+/// What is being done, in a line.
+pub(super) fn title(id: &str, title: &str, options: &Options) -> Result<()> {
+    if unsaid(options) { Ok(()) } else { put(&format!("{}\n", format!("{id}  {title}").trim_end())) }
+}
+
+/// Prints a row.
+pub(super) fn row(answer: &Answer, options: &Options) -> Result<()> {
+    let empty = answer.exact().is_none() && answer.found().is_none() && answer.sentence().is_none();
+    if unsaid(options) || options.edition == Edition::Student || empty {
+        return Ok(());
+    }
+    put(&format!("\n{}", solution(answer, options)))
+}
+
+/// Saves the figures, and prints what follows the rows; for programs, the rows.
+pub(super) fn ending(
+    question: &'static Question,
+    answers: &[Answer],
+    options: &Options,
+    voice: Voice,
+) -> Result<()> {
     let stated = question.at(options)?;
     if options.shard.is_some() {
         let mut shards = answers.iter().filter(|answer| answer.part().is_some());
@@ -32,15 +75,78 @@ pub(super) fn answers(question: &'static Question, answers: &[Answer], options: 
             rows.push((answer, paths));
         }
     }
-    if options.quiet {
+    if options.json {
+        let printed = rows.iter().try_for_each(|(answer, paths)| json(&stated, answer, paths, options));
+        return printed.or_else(until_the_pipe_closes);
+    } else if voice == Voice::Brief || options.quiet {
         return Ok(());
     }
-    let printed = if options.json {
-        rows.iter().try_for_each(|(answer, paths)| json(&stated, answer, paths, options))
-    } else {
-        text(question, &stated, &rows, options)
-    };
-    printed.or_else(until_the_pipe_closes)
+    let mut text = String::new();
+    if options.edition == Edition::Solution {
+        if !stated.wrong.is_empty() {
+            text += "\n    classic wrong answers\n";
+        }
+        for (answer, slip) in &stated.wrong {
+            text += &labelled("    · ", &format!("{answer}: {slip}"), width());
+        }
+    }
+    let drawn: String =
+        rows.iter().flat_map(|(_, paths)| svgs(paths)).map(|path| figure_line(path)).collect();
+    if !drawn.is_empty() {
+        text += &format!("\n{drawn}");
+    }
+    if options.edition == Edition::Solution {
+        let (command, remark) = options.command(question, answers.iter());
+        text += "\n    again\n";
+        text += &command_lines(&command, width());
+        if let Some(remark) = remark {
+            text += &paragraph(&format!("{remark} (--verbose tells it)"));
+        }
+    }
+    put(&text)
+}
+
+fn figure_line(path: &Path) -> String {
+    format!("    figure       {}\n", path.display())
+}
+
+/// The worksheet in a line a question, once all of it is done.
+pub(super) fn summary(answered: &[(&Question, Vec<Answer>)], options: &Options) -> Result<()> {
+    if unsaid(options) || options.edition == Edition::Student {
+        return Ok(());
+    }
+    let mut text = String::from("\n       right rows   largest |z|   seconds   besides\n");
+    for (question, rows) in answered {
+        let judged: Vec<bool> = rows.iter().filter_map(Answer::right).collect();
+        let right = judged.iter().filter(|right| **right).count();
+        let mark = match judged.len() {
+            0 => "–",
+            all if all == right => "✓",
+            _ => "✗",
+        };
+        let of = if judged.is_empty() { "–".into() } else { format!("{right} of {}", judged.len()) };
+        let judged_by_z = rows.iter().filter(|row| row.agrees().is_some()).filter_map(Answer::z);
+        let largest = judged_by_z.map(f64::abs).reduce(f64::max);
+        let largest = largest.map_or("–".into(), |z| format!("{z:.2}"));
+        let seconds = rows.iter().filter_map(Answer::seconds).fold(0.0, |sum, seconds| sum + seconds);
+        let line = format!("{:<4} {mark} {of:>10}   {largest:>11}   {seconds:>7.2}   ", question.id);
+        text += &labelled(&line, &besides(rows), width());
+    }
+    put(&text)
+}
+
+/// How many rows are not judged, and why.
+fn besides(rows: &[Answer]) -> String {
+    let mut counts: Vec<(&str, usize)> = Vec::new();
+    for word in rows.iter().filter(|row| row.right().is_none()).map(Answer::verdict) {
+        let word = word.split(':').next().unwrap_or(word);
+        match counts.iter_mut().find(|(known, _)| *known == word) {
+            Some((_, count)) => *count += 1,
+            None if word.is_empty() => {}
+            None => counts.push((word, 1)),
+        }
+    }
+    counts.iter().map(|(word, count)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
 }
 
 /// Saves an appendix's figures, and prints it unless it is not `wanted`.
@@ -52,31 +158,24 @@ pub(super) fn appendix(appendix: &Appendix, wanted: bool, options: &Options) -> 
     if !wanted {
         return Ok(());
     }
-    let print = || -> io::Result<()> {
-        let out = &mut io::stdout().lock();
-        if options.json {
-            for (index, record) in appendix.records.iter().enumerate() {
-                // the figures belong to all of it, and are named once
-                let figures = if index == 0 { &paths[..] } else { &[] };
-                writeln!(out, "{}", serde_json::to_string(&Row::of(record, figures))?)?;
-            }
-            return Ok(());
+    if options.json {
+        let print = |(index, record)| {
+            // the figures belong to all of it, and are named once
+            let figures = if index == 0 { &paths[..] } else { &[] };
+            writeln!(io::stdout(), "{}", serde_json::to_string(&Row::of(record, figures))?)
+        };
+        return appendix.records.iter().enumerate().try_for_each(print).or_else(until_the_pipe_closes);
+    }
+    let mut text = format!("\n{}\n\n{}", appendix.title, paragraph(&appendix.text));
+    for table in &appendix.tables {
+        text += &format!("\n{}\n", paragraph(&table.caption));
+        for line in stacked(table, width() - 4) {
+            text += &format!("{}\n", format!("    {line}").trim_end());
         }
-        writeln!(out, "\n{}\n", appendix.title)?;
-        wrapped(out, &appendix.text)?;
-        for table in &appendix.tables {
-            writeln!(out, "\n    {}\n", table.caption)?;
-            for line in table.lines() {
-                writeln!(out, "    {line}")?;
-            }
-        }
-        writeln!(out)?;
-        for svg in svgs(&paths) {
-            writeln!(out, "    figure       {}", svg.display())?;
-        }
-        Ok(())
-    };
-    print().or_else(until_the_pipe_closes)
+    }
+    text += "\n";
+    text.extend(svgs(&paths).map(|path| figure_line(path)));
+    put(&text)
 }
 
 fn svgs(paths: &[PathBuf]) -> impl Iterator<Item = &PathBuf> {
@@ -85,15 +184,17 @@ fn svgs(paths: &[PathBuf]) -> impl Iterator<Item = &PathBuf> {
 
 /// A last line of the worksheet: where a page is.
 pub(super) fn page(path: &Path, options: &Options) -> Result<()> {
-    if options.json || options.quiet {
-        return Ok(());
-    }
-    writeln!(io::stdout(), "\nPage: {}", path.display()).or_else(until_the_pipe_closes)
+    if unsaid(options) { Ok(()) } else { put(&format!("\nPage: {}\n", path.display())) }
 }
 
 /// A line for people.
 pub(super) fn line(text: &str) -> Result<()> {
-    writeln!(io::stdout(), "{text}").or_else(until_the_pipe_closes)
+    put(&format!("{text}\n"))
+}
+
+/// Whether nothing is said to people.
+fn unsaid(options: &Options) -> bool {
+    options.json || options.quiet
 }
 
 /// A reader that has seen enough is no error; a full disk is.
@@ -161,96 +262,72 @@ fn json(stated: &Stated, answer: &Answer, figures: &[PathBuf], options: &Options
     writeln!(io::stdout(), "{}", serde_json::to_string(&row)?)
 }
 
-fn text(
-    question: &Question,
-    stated: &Stated,
-    rows: &[(&Answer, Vec<PathBuf>)],
-    options: &Options,
-) -> io::Result<()> {
-    let out = &mut io::stdout().lock();
-    writeln!(out, "\n{}  {}\n", question.id, stated.title)?;
-    wrapped(out, &stated.statement)?;
-    if options.edition == Edition::Solution {
-        writeln!(out, "\n    closed form  {}", stated.formula)?;
-        let own = options.own(question);
-        if !own.is_empty() {
-            writeln!(out, "    below        {own}, instead of the sheet's")?;
-        }
+fn solution(answer: &Answer, options: &Options) -> String {
+    let width = width();
+    let part = answer.question().find('(').and_then(|at| answer.question().get(at..));
+    let mut title = part.map_or(String::new(), |part| format!("{part} "));
+    title += answer.what();
+    let otherwise = options.varied([answer]);
+    for (name, value) in answer.parameters().iter().filter(|(name, _)| otherwise.contains(name)) {
+        title += &format!(", {name} = {}", value.shortened());
     }
-    let varied = options.varied(rows.iter().map(|(answer, _)| *answer));
-    for (answer, paths) in rows {
-        if options.edition == Edition::Solution {
-            writeln!(out)?;
-            solution(out, answer, &varied)?;
-        }
-        for svg in svgs(paths) {
-            writeln!(out, "    figure       {}", svg.display())?;
-        }
-    }
-    let solved = options.edition == Edition::Solution;
-    if solved && !stated.wrong.is_empty() {
-        writeln!(out, "\n    classic wrong answers")?;
-    }
-    for (answer, slip) in stated.wrong.iter().filter(|_| solved) {
-        wrapped(out, &format!("· {answer}: {slip}"))?;
-    }
-    if options.edition == Edition::Solution {
-        let (command, remark) = options.command(question, rows.iter().map(|(answer, _)| *answer));
-        writeln!(out, "\n    again        {command}")?;
-        if let Some(remark) = remark {
-            writeln!(out, "                 {remark}")?;
-        }
-    }
-    Ok(())
-}
-
-fn solution(out: &mut impl Write, answer: &Answer, varied: &[&str]) -> io::Result<()> {
-    write!(out, "    {}  {}", answer.question(), answer.what())?;
-    for (name, value) in answer.parameters().iter().filter(|(name, _)| varied.contains(name)) {
-        write!(out, ", {name} = {}", value.shortened())?;
-    }
-    writeln!(out)?;
+    let mut text = labelled("    ", &title, width);
+    let verdict = answer.verdict();
     if let Some(truth) = answer.exact() {
-        writeln!(out, "        truth    {}", shortened(truth))?;
+        text += &format!("        truth    {}\n", shortened(truth));
     }
     if let Some(estimate) = answer.estimate() {
-        write!(out, "        estimate {}", interval(answer))?;
+        let mut line = interval(answer);
         if estimate.draws() > 1 {
-            write!(out, " (95 %)")?;
+            line += " (95 %)";
         }
-        let too_few = answer.too_few_draws();
-        if let Some(z) = answer.z().filter(|z| !too_few || z.is_finite()) {
-            write!(out, "   z = {z:.2}")?;
+        if let Some(z) = answer.z().filter(|z| !answer.too_few_draws() || z.is_finite()) {
+            line += &format!("   z = {}", z_shown(z));
         }
-        if too_few {
-            write!(out, "   {TOO_FEW}")?;
+        if 17 + line.chars().count() + 3 + verdict.chars().count() < width {
+            line += &format!("   {verdict}");
+        } else {
+            text += &format!("        estimate {line}\n");
+            line = verdict.into();
         }
-        match answer.agrees() {
-            Some(true) => write!(out, "   ✓")?,
-            Some(false) => write!(out, "   ✗")?,
-            None => {}
-        }
-        let cost = answer.cost();
-        write!(out, "\n        cost     {} draws, {} random numbers", estimate.draws(), cost.random_numbers)?;
-        if cost.evaluations > 0 {
-            write!(out, ", {} evaluations", cost.evaluations)?;
-        }
-        if answer.pilot_never_varied() {
-            write!(out, ", the pilot run never varied")?;
-        }
-        let seed = answer.seed().unwrap_or_default();
-        writeln!(out, ", {:.3} s, seed {seed}", answer.seconds().unwrap_or_default())?;
+        let label = if line == verdict { " ".repeat(17) } else { "        estimate ".into() };
+        let why = answer.on_purpose().unwrap_or_default();
+        let fits = 17 + line.chars().count() + 2 + why.chars().count() <= width;
+        text += &match (why.is_empty(), fits) {
+            (true, _) => format!("{label}{line}\n"),
+            (_, true) => format!("{label}{line}: {why}\n"),
+            _ => format!("{label}{line}:\n{}", labelled(&" ".repeat(17), why, width)),
+        };
     } else if let Some(value) = answer.found() {
-        writeln!(out, "        found    {}", shortened(value))?;
+        text += &labelled("        found    ", &format!("{}   {verdict}", shortened(value)), width);
     }
-    for note in cut_short(answer).as_deref().into_iter().chain(answer.sentence()) {
-        wrapped(out, note)?;
+    if options.verbose && answer.estimate().is_some() {
+        text += &labelled("        cost     ", &cost(answer), width);
     }
-    Ok(())
+    let reason = answer.reason().filter(|_| answer.on_purpose().is_none());
+    for sentence in cut_short(answer).into_iter().chain(reason).chain(answer.sentence().map(str::to_owned)) {
+        text += &labelled("        ", &sentence, width);
+    }
+    text
 }
 
-/// Instead of ✓ or ✗.
-pub(super) const TOO_FEW: &str = "too few draws to judge";
+/// Two digits after the point, as long as these mean something.
+fn z_shown(z: f64) -> String {
+    let places = if z.abs() < 100.0 { 2 } else { 0 };
+    format!("{z:.places$}").replace('-', "−")
+}
+
+fn cost(answer: &Answer) -> String {
+    let (cost, draws) = (answer.cost(), answer.estimate().map_or(0, |estimate| estimate.draws()));
+    let mut text = format!("{draws} draws, {} random numbers", cost.random_numbers);
+    if cost.evaluations > 0 {
+        text += &format!(", {} evaluations", cost.evaluations);
+    }
+    if answer.pilot_never_varied() {
+        text += ", the pilot run never varied";
+    }
+    text + &format!(", {:.3} s", answer.seconds().unwrap_or_default())
+}
 
 /// What a row says that did not reach the error asked for.
 pub(super) fn cut_short(answer: &Answer) -> Option<String> {
@@ -270,28 +347,39 @@ pub(super) fn interval(answer: &Answer) -> String {
     }
 }
 
-/// Text in lines of at most 96 characters, indented.
-fn wrapped(out: &mut impl Write, text: &str) -> io::Result<()> {
-    let mut line = String::from("   ");
-    for word in text.split_whitespace() {
-        if line.chars().count() + 1 + word.chars().count() > 96 {
-            writeln!(out, "{line}")?;
-            line = String::from("   ");
-        }
-        line.push(' ');
-        line.push_str(word);
-    }
-    writeln!(out, "{line}")
+/// Text in lines that fit, indented.
+fn paragraph(text: &str) -> String {
+    labelled("    ", text, width())
+}
+
+/// Writes to standard output, at once.
+fn put(text: &str) -> Result<()> {
+    let mut out = io::stdout().lock();
+    out.write_all(text.as_bytes()).and_then(|()| out.flush()).or_else(until_the_pipe_closes)
 }
 
 /// `--hint`
 pub(super) fn hints(questions: &[&'static Question], options: &Options) -> Result<()> {
-    for question in questions {
-        let hint = question.at(options)?.hint;
-        writeln!(io::stdout(), "{}  {hint}", question.id).or_else(until_the_pipe_closes)?;
-    }
-    Ok(())
+    let hint = |question: &&'static Question| {
+        Ok(labelled(&format!("{}  ", question.id), &question.at(options)?.hint, width()))
+    };
+    put(&questions.iter().map(hint).collect::<Result<String>>()?)
 }
+
+/// Help in lines that fit; what an option does stands in a column of its own.
+fn options_folded(text: &str) -> String {
+    let lines = text.lines().map(|line| match line.char_indices().nth(OPTION) {
+        Some((at, _)) if line.starts_with("    --") => {
+            let (option, help) = line.split_at(at);
+            labelled(option, help, width())
+        }
+        _ => folded(line, width()) + "\n",
+    });
+    lines.collect()
+}
+
+/// The width of the column of options in the help.
+const OPTION: usize = 25;
 
 /// `--help` of an example beside the questions
 pub(super) fn help_beside(beside: &Beside) -> Result<()> {
@@ -303,7 +391,7 @@ pub(super) fn help_beside(beside: &Beside) -> Result<()> {
     --out DIR            folder for figures (worksheet)
     --json               one JSON object a line
 ";
-    write!(io::stdout(), "{text}").or_else(until_the_pipe_closes)
+    put(&options_folded(&text))
 }
 
 /// `--help`
@@ -317,22 +405,21 @@ pub(super) fn help(questions: &[&'static Question]) -> Result<()> {
     }
     text += "Options
     --draws N            draws of every estimator (default: each question's own number)
-    --error E            draws until the std error is E, in the units of the answer, by a pilot run: never fewer
-                         than the pilot's (10⁶ where they are cheap), and about 5 s of them a row at most
-    --seconds S          draws for S seconds an estimator
-";
+    --error E            draws until the std error is E, in the units of the answer, by a pilot run: never fewer than the pilot's (10⁶ where they are cheap), and about 5 s of them a row at most
+    --seconds S          draws for S seconds an estimator";
     if questions.len() > 1 {
-        text += "                         (0.1 s at most where many are compared, in the last part of the page)\n";
+        text += " (0.1 s at most where many are compared, in the last part of the page)";
     }
-    text += "    --seed S             seed of all random numbers (1)
+    text += "\n    --seed S             seed of all random numbers (1)
     --threads T          threads (one a core; for the same draws the results are the same for any number)
     --out DIR            folder for figures and pages (worksheet)
     --json               one JSON object a line
+    --verbose            what every row took: draws, random numbers, evaluations, seconds
     --edition NAME       student, solution or both (solution)
-    --shard K/N          only shard K of N of every run, for --merge (with --json)
-    --merge FILE...      puts every run together from what its shards printed
     --variant NAME       numbers of a variant's own: any text names one
     --variants FILE      a worksheet for each name in a file, one a line, and one key (with worksheet)
+    --shard K/N          only shard K of N of every run, for --merge (with --json)
+    --merge FILE...      puts every run together from what its shards printed
     --hint               a nudge that does not tell the answer
 ";
     for question in questions {
@@ -342,5 +429,5 @@ pub(super) fn help(questions: &[&'static Question]) -> Result<()> {
             text += &format!("    {option:<20} {} ({})\n", parameter.help, parameter.default);
         }
     }
-    write!(io::stdout(), "{text}").or_else(until_the_pipe_closes)
+    put(&options_folded(&text))
 }

@@ -9,14 +9,15 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::run::Progress;
 
 /// Does work that reports how many draws are done, and how many there will be: from the second second on, a
-/// bar shows them on a terminal.
-pub(super) fn watched<T>(wanted: bool, work: impl FnOnce(&Progress<'_>) -> T) -> T {
+/// bar shows them on a terminal. Work that has a `time` of its own has a bar of time.
+pub(super) fn watched<T>(wanted: bool, time: Option<Duration>, work: impl FnOnce(&Progress<'_>) -> T) -> T {
     let start = Instant::now();
     let bar = OnceCell::new();
     let shown = wanted && std::io::stderr().is_terminal();
     let progress = |done: u64, total: Option<u64>| {
         if shown && start.elapsed() > Duration::from_secs(1) {
-            bar.get_or_init(|| progress_bar(total)).set_position(done);
+            let bar = bar.get_or_init(|| progress_bar(time, total));
+            bar.set_position(time.map_or(done, |_| milliseconds(start.elapsed())));
         }
     };
     let result = work(&progress);
@@ -26,8 +27,18 @@ pub(super) fn watched<T>(wanted: bool, work: impl FnOnce(&Progress<'_>) -> T) ->
     result
 }
 
-fn progress_bar(total: Option<u64>) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:40} {human_pos} of {human_len} draws, {eta} to go");
-    let bar = ProgressBar::new(total.unwrap_or(0));
-    style.map(|style| bar.clone().with_style(style)).unwrap_or(bar)
+fn progress_bar(time: Option<Duration>, total: Option<u64>) -> ProgressBar {
+    let template = match time {
+        Some(time) => format!("{{bar:40}} {{elapsed}} of {:.0} s", time.as_secs_f64()),
+        None => "{bar:40} {human_pos} of {human_len} draws, {eta} to go".into(),
+    };
+    let bar = ProgressBar::new(time.map(milliseconds).or(total).unwrap_or(0));
+    match ProgressStyle::with_template(&template) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+fn milliseconds(time: Duration) -> u64 {
+    u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
 }

@@ -180,7 +180,7 @@ impl Wish {
             };
             let seed = check::seed_of(probe, self.seed);
             let (measurement, outcome) = told_once(probe, || {
-                watched(!self.json, |progress| {
+                watched(!self.json, None, |progress| {
                     let run = Run::new(seed).max_draws(u64::MAX).max_time(MOST_TIME).progress(progress);
                     mine.measure(probe, &run, budget)
                 })

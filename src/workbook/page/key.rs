@@ -15,15 +15,12 @@ pub(super) fn legend(options: &Options) -> Markup {
         div.legend {
             p { strong { "✓" } " estimate and exact value agree: they differ by at most four standard errors. "
                 strong { "✗" } " they do not. " strong { "± " } "is a 95 % interval; z is the difference in standard errors." }
-            p { strong { (FOR_SHOW) } " a row that is wrong on purpose, to show what a mistake does, or whose variance is "
-                "infinite, so that its error bar means nothing. Neither is checked, and neither gets a mark." }
+            p { strong { "wrong on purpose" } " shows what a mistake does; with " strong { "infinite variance" }
+                " an error bar means nothing. Neither is checked, and neither gets a mark." }
             p { "All random numbers come from seed " (options.seed) "." }
         }
     }
 }
-
-/// Instead of a mark.
-const FOR_SHOW: &str = "for show";
 
 pub(super) fn article(question: &'static Question, answers: &[Answer], options: &Options) -> Result<Markup> {
     let options = options.for_question(question);
@@ -92,7 +89,7 @@ fn in_a_line(question: &Question, row: &Answer) -> Markup {
             @if let Some(truth) = row.exact() { "exactly " (shortened(truth)) }
             @if row.estimate().is_some() {
                 @if row.exact().is_some() { ", " }
-                "estimated " (print::interval(row)) " " (mark(row))
+                "estimated " (print::interval(row)) " " (row.verdict())
             } @else if let (None, Some(value)) = (row.exact(), row.found()) { (shortened(value)) }
         }
     }
@@ -144,7 +141,7 @@ fn table(question: &Question, rows: &[&Answer], options: &Options) -> Markup {
                 td.number data-name="draws" {
                     @if let Some(estimate) = row.estimate() { (grouped(estimate.draws())) }
                 }
-                td data-name="verdict" { (mark(row)) }
+                td data-name="verdict" { (row.verdict()) }
             } } }
         }
     }
@@ -156,16 +153,6 @@ fn of_z(z: f64) -> String {
         far if far.is_infinite() => "beyond all error".into(),
         far if far >= 100.0 => format!("{z:.0}").replace('-', "−"),
         _ => format!("{z:.2}").replace('-', "−"),
-    }
-}
-
-fn mark(row: &Answer) -> &'static str {
-    match row.agrees() {
-        Some(true) => "✓",
-        Some(false) => "✗",
-        None if row.too_few_draws() => print::TOO_FEW,
-        None if row.kind() == super::super::Kind::Demonstration => FOR_SHOW,
-        None => "",
     }
 }
 

@@ -1,0 +1,301 @@
+//! The sheet that an example fills: a question's rows, one after the other.
+
+use std::cell::{Cell, RefCell};
+
+use super::answer::Words;
+use super::{Answer, AnswerFn, Options, Question, Value, print};
+use crate::box_room::Scene;
+use crate::error::Result;
+use crate::estimator::Estimator;
+use crate::figure::{Edition, Figure};
+use crate::numbers::rounded;
+use crate::stream::{Stream, mix};
+
+/// A question's sheet. It knows the question, its parameters, the seed and the number of draws; an example
+/// adds rows to it.
+///
+/// In the student's edition nothing is run: rows are titles alone, and only figures to draw in are made.
+pub struct Sheet {
+    question: &'static Question,
+    options: Options,
+    voice: Voice,
+    rows: RefCell<Vec<Answer>>,
+    /// How many of the rows are printed; none before the question is.
+    told: Cell<Option<usize>>,
+}
+
+/// What is printed while a question is answered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Voice {
+    /// Its title alone.
+    Brief,
+    /// The question, then every row as it is done.
+    Full,
+}
+
+/// Draws of a row that asks for no other number.
+const DRAWS: u64 = 1_000_000;
+
+/// Random numbers, or evaluations where they are more, that a row takes at most unless the command line asks for
+/// draws: some ten seconds of them.
+const MOST_WORK: f64 = 1e9;
+
+/// The same for a single draw, which nothing can cut short.
+const MOST_WORK_A_DRAW: f64 = 1e7;
+
+/// Answers a question, prints it and saves its figures.
+pub(super) fn answered(
+    question: &'static Question,
+    answer: AnswerFn,
+    options: &Options,
+    voice: Voice,
+) -> Result<Vec<Answer>> {
+    let options = options.for_question(question);
+    let sheet = Sheet { question, options, voice, rows: RefCell::default(), told: Cell::new(None) };
+    if voice == Voice::Brief {
+        sheet.tell(0)?;
+    }
+    answer(&sheet)?;
+    if let Some(shards) = sheet.options.shards.as_deref() {
+        shards.belong_to(&sheet.rows.borrow())?;
+    }
+    sheet.tell(usize::MAX)?;
+    let rows = sheet.rows.into_inner();
+    print::ending(question, &rows, &sheet.options, voice)?;
+    Ok(rows)
+}
+
+impl Sheet {
+    /// The question's own number `name`.
+    pub fn number(&self, name: &str) -> f64 {
+        self.options.number(name)
+    }
+
+    /// The question's own number `name`, where only a whole one ≥ 0 will do.
+    ///
+    /// # Errors
+    /// If it is anything else.
+    pub fn whole_number(&self, name: &'static str) -> Result<u64> {
+        self.options.whole_number(name)
+    }
+
+    /// The question's own count `name`; None for "all".
+    pub fn limit(&self, name: &str) -> Option<u32> {
+        self.options.limit(name)
+    }
+
+    /// The box room that section 4's parameters describe.
+    pub fn scene(&self) -> Scene {
+        self.options.scene()
+    }
+
+    /// The seed of all random numbers.
+    pub fn seed(&self) -> u64 {
+        self.options.seed
+    }
+
+    /// Adds a row about `what`, which does not tell the answer. Its parameters are the question's own.
+    pub fn row(&self, what: impl AsRef<str>) -> Row<'_> {
+        let mut answer = Answer::new(self.question.id, what.as_ref());
+        for (name, value) in self.options.parameters() {
+            answer = answer.parameter(name.replace('-', "_"), value);
+        }
+        self.rows.borrow_mut().push(answer);
+        Row { sheet: self, index: self.last(), draws: DRAWS, most_work: false }
+    }
+
+    /// Adds a figure of the answer to the row before it. It is made where it is shown: not in the student's edition, and
+    /// not by a shard.
+    ///
+    /// # Errors
+    /// Those of making it.
+    pub fn figure<F: Into<Vec<Figure>>>(&self, make: impl FnOnce() -> Result<F>) -> Result<()> {
+        if self.options.edition == Edition::Solution { self.drawing(|_| make()) } else { Ok(()) }
+    }
+
+    /// Adds a figure that students draw in, too, to the row before it.
+    ///
+    /// # Errors
+    /// Those of making it.
+    pub fn drawing<F: Into<Vec<Figure>>>(&self, make: impl FnOnce(Edition) -> Result<F>) -> Result<()> {
+        let drawn = |row: &Answer| row.figures(self.options.edition).next().is_some();
+        let enough = self.options.one_figure && self.rows.borrow().iter().any(drawn);
+        if self.options.shard.is_none() && !enough {
+            self.tell_all_but_the_last()?;
+            for figure in make(self.options.edition)?.into() {
+                self.change(self.last(), |answer| answer.figure(figure));
+            }
+        }
+        Ok(())
+    }
+
+    fn change(&self, index: usize, change: impl FnOnce(Answer) -> Answer) {
+        if let Some(answer) = self.rows.borrow_mut().get_mut(index) {
+            *answer = change(answer.clone());
+        }
+    }
+
+    fn last(&self) -> usize {
+        self.rows.borrow().len().saturating_sub(1)
+    }
+
+    /// Prints the question, before all, and those of the first `done` rows that are not printed yet. Of shards it is not known
+    /// before the end whether they belong to these rows.
+    fn tell(&self, done: usize) -> Result<()> {
+        if self.told.get().is_none() {
+            print::heading(self.question, &self.options, self.voice)?;
+        }
+        let told = self.told.get().unwrap_or(0);
+        if self.voice == Voice::Full {
+            for answer in self.rows.borrow().iter().take(done).skip(told) {
+                print::row(answer, &self.options)?;
+            }
+        }
+        self.told.set(Some(done.max(told)));
+        Ok(())
+    }
+
+    /// The same before the last row is worked on.
+    fn tell_all_but_the_last(&self) -> Result<()> {
+        if self.options.shards.is_some() { Ok(()) } else { self.tell(self.last()) }
+    }
+}
+
+impl From<Figure> for Vec<Figure> {
+    fn from(figure: Figure) -> Self {
+        vec![figure]
+    }
+}
+
+/// A row of a [`Sheet`], to which its number, and what there is to say of it, is added.
+pub struct Row<'s> {
+    sheet: &'s Sheet,
+    index: usize,
+    draws: u64,
+    /// Whether a draw of it takes too long for any number of them.
+    most_work: bool,
+}
+
+impl Row<'_> {
+    fn set(self, change: impl FnOnce(Answer) -> Answer) -> Self {
+        self.sheet.change(self.index, change);
+        self
+    }
+
+    /// It belongs to this part of the question: "(ii)".
+    pub fn part(self, part: &str) -> Self {
+        self.set(|answer| answer.part_of_question(part))
+    }
+
+    /// A parameter that it has otherwise than the question, or besides.
+    pub fn parameter(self, name: &'static str, value: impl Into<Value>) -> Self {
+        self.set(|answer| answer.parameter(name, value))
+    }
+
+    /// The closed form's value; None where there is none.
+    pub fn truth(self, truth: impl Into<Option<f64>>) -> Self {
+        let truth = truth.into();
+        self.set(|answer| match truth {
+            Some(truth) => answer.truth(truth),
+            None => answer,
+        })
+    }
+
+    /// A value without an error bar, found numerically.
+    pub fn value(self, value: f64) -> Self {
+        self.set(|answer| answer.value(value))
+    }
+
+    /// A sentence: the answer itself where it is no number, or a word on this one.
+    pub fn note(self, note: impl Into<String>) -> Self {
+        self.set(|answer| answer.note(note))
+    }
+
+    /// It is a classic mistake, in a few words, and nothing that must agree with the truth.
+    pub fn wrong_on_purpose(self, why: impl Into<String>) -> Self {
+        self.set(|answer| answer.not_judged(Words::WrongOnPurpose(why.into())))
+    }
+
+    /// Where the variance is infinite its error bar means nothing, and is not judged by.
+    pub fn infinite_variance_if(self, infinite: bool) -> Self {
+        if infinite { self.set(|answer| answer.not_judged(Words::InfiniteVariance)) } else { self }
+    }
+
+    /// Where there is a reason to mistrust its error bar, it is not judged by.
+    pub fn careful(self, caution: Option<String>) -> Self {
+        match caution {
+            Some(caution) => self.set(|answer| answer.not_judged(Words::Careful(caution))),
+            None => self,
+        }
+    }
+
+    /// The number of draws, where the command line names none and a million will not do.
+    pub fn draws(mut self, draws: u64) -> Self {
+        self.draws = draws;
+        self
+    }
+
+    /// A draw takes about so many random numbers: where these are too many, it is left out, and the row says so.
+    pub fn takes(mut self, numbers: f64) -> Self {
+        self.most_work = numbers > MOST_WORK_A_DRAW;
+        if !self.most_work {
+            return self;
+        }
+        let note = format!("Left out: a draw takes about {} random numbers.", rounded(numbers, 2));
+        self.set(|answer| answer.note(note).not_judged(Words::LeftOut))
+    }
+
+    /// Runs an estimator of it: for the draws, the time or the error that the command line names.
+    ///
+    /// # Errors
+    /// Those of [`Run::estimate`](crate::Run::estimate).
+    pub fn estimate(self, estimator: &(impl Estimator + ?Sized)) -> Result<Self> {
+        if self.sheet.options.edition == Edition::Student || self.most_work {
+            return Ok(self);
+        }
+        self.sheet.tell_all_but_the_last()?;
+        let (draws, cut) = match self.sheet.options.budget {
+            None if self.sheet.options.shards.is_none() => within_reason(estimator, self.draws),
+            _ => (self.draws, None),
+        };
+        // the worksheets of a class take a minute so
+        let draws = if self.sheet.options.one_figure { (draws / 8).max(2) } else { draws };
+        let outcome = self.sheet.options.run(estimator, draws)?;
+        Ok(self.set(|answer| match cut {
+            Some(cut) => answer.outcome(&outcome).note(cut),
+            None => answer.outcome(&outcome),
+        }))
+    }
+
+    /// Once it is estimated: a reason not to judge it, if `doubt` finds one in its mean.
+    pub fn doubted(self, doubt: impl FnOnce(f64) -> Option<String>) -> Self {
+        self.set(|answer| match answer.estimate().and_then(|estimate| doubt(estimate.mean())) {
+            Some(doubt) => answer.not_judged(Words::Careful(doubt)),
+            None => answer,
+        })
+    }
+}
+
+/// As many of these draws as take no more than [`MOST_WORK`], by what a few others take, and a word where
+/// that is fewer. It depends on no clock, so the same command gives the same draws.
+fn within_reason(estimator: &(impl Estimator + ?Sized), draws: u64) -> (u64, Option<String>) {
+    let mut rng = Stream::new(mix(0x7768_6174_206f_6e65), 0);
+    let mut tried = 0;
+    let work = |rng: &Stream| rng.random_numbers().max(rng.evaluations()) as f64;
+    while tried < 64 && work(&rng) < MOST_WORK_A_DRAW {
+        estimator.draw(&mut rng);
+        tried += 1;
+    }
+    let each = work(&rng) / f64::from(tried);
+    if each * draws as f64 <= MOST_WORK {
+        return (draws, None);
+    }
+    let fewer = ((MOST_WORK / each) as u64).clamp(2, draws);
+    // a round number
+    let fewer = rounded(fewer as f64, 1).parse::<f64>().map_or(fewer, |round| round as u64).max(2);
+    let each = rounded(each, 2);
+    let cut = format!(
+        "Cut short: a draw takes about {each} random numbers or evaluations. --draws {draws} takes all of them."
+    );
+    (fewer, Some(cut))
+}
