@@ -121,13 +121,13 @@ fn the_sheets_scene_shows_three_paths_of_two_and_of_three_bounces() {
 #[test]
 fn paths_are_drawn_from_where_p_is_seen_beside_the_cube() {
     for (point, across) in [
-        ([0.0, -0.5, 0.5], "y (m)"),
-        ([0.2, 0.5, 0.3], "y (m)"),
-        ([0.0, 1.5, 0.0], "y (m)"),
-        ([0.0, 2.0, 3.0], "y (m)"),
-        ([0.5, 0.0, 0.5], "x (m)"),
-        ([1.5, 0.0, 0.0], "x (m)"),
-        ([2.0, 2.0, 4.0], "x (m)"),
+        ([0.0, -0.5, 0.5], "from the east, along x"),
+        ([0.2, 0.5, 0.3], "from the east, along x"),
+        ([0.0, 1.5, 0.0], "from the east, along x"),
+        ([0.0, 2.0, 3.0], "from the east, along x"),
+        ([0.5, 0.0, 0.5], "from the south, along y"),
+        ([1.5, 0.0, 0.0], "from the south, along y"),
+        ([2.0, 2.0, 4.0], "from the south, along y"),
     ] {
         let scene = Scene { point, ..Scene::default() };
         for bounces in [2, 3] {

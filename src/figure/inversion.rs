@@ -30,7 +30,9 @@ pub fn exponential(exponential: &Exponential, u: f64, edition: Edition) -> Resul
     let share = |name: &str| Axis::linear(name, 0.0, 1.0);
 
     // the axes' names do not say what 1.3 asks
-    let mut cdf = Panel::new("CDF", along("x (dimensionless)"), share("F(x) (dimensionless)"));
+    let (lambda, given) = (typeset(rate, 12), typeset(u, 12));
+    let heading = format!("CDF, λ = {lambda}");
+    let mut cdf = Panel::new(&heading, along("x (dimensionless)"), share("F(x) (dimensionless)"));
     cdf.curve("F", Ink::Blue, |x| exponential.cdf(x));
     let mut inverse = Panel::new("Inverse CDF", share("u (dimensionless)"), along("F⁻¹(u) (dimensionless)"));
     inverse.curve("F⁻¹", Ink::Vermilion, |u| exponential.inverse_cdf(u).unwrap_or(f64::NAN));
@@ -38,7 +40,6 @@ pub fn exponential(exponential: &Exponential, u: f64, edition: Edition) -> Resul
     let mut pdf = Panel::new("PDF", along("x (dimensionless)"), density);
     pdf.curve("p", Ink::Green, |x| exponential.pdf(x));
 
-    let (lambda, given) = (typeset(rate, 12), typeset(u, 12));
     if edition == Edition::Solution {
         let answer = Sample { u, x, at: rate * x, p: exponential.pdf(x), label: sample_label(rate, u, x) };
         answer.on_cdf(&mut cdf);
@@ -113,9 +114,9 @@ impl Sample {
         let place = at / LENGTHS;
         let foot = panel.spot(place, 0.07);
         if place > 1.0 {
-            let [edge, below] = panel.spot(1.0, u - 0.12);
+            let [edge, _] = panel.spot(1.0, u);
             panel.arrow(Ink::Black, [0.0, u], [edge, u]);
-            panel.text(Ink::Black, [edge, below], Side::Left, &format!("{label}, beyond the axis →"));
+            panel.note(Ink::Black, [1.0, 0.5], Side::Left, &format!("{label}, beyond the axis →"));
         } else {
             panel.arrow(Ink::Black, [0.0, u], [x, u]).arrow(Ink::Black, [x, u], [x, 0.0]);
             panel.marks("sample", Ink::Black, Marker::Disc, [[x, u]]);
@@ -152,7 +153,7 @@ impl Sample {
             panel.note(Ink::Black, [0.0, up], Side::UpperRight, label);
         }
         let (start, side) = match u {
-            u if u < 0.25 => (panel.spot(0.3, 0.04), Side::Right),
+            u if u < 0.4 => (panel.spot(0.4, 0.04), Side::Right),
             u if u < 0.55 => (panel.spot(u, 0.04), Side::Right),
             _ => (panel.spot(u, 0.07), Side::Left),
         };
@@ -164,7 +165,7 @@ impl Sample {
         let Self { x, at, p, ref label, .. } = *self;
         let place = at / LENGTHS;
         if place > 1.0 {
-            panel.note(Ink::Black, [1.0, 0.15], Side::Left, &format!("{label}, beyond the axis →"));
+            panel.note(Ink::Black, [1.0, 0.5], Side::Left, &format!("{label}, beyond the axis →"));
             return;
         }
         panel.arrow(Ink::Black, [x, 0.0], [x, p]);
