@@ -171,7 +171,7 @@ pub fn variance_against_exponent(draws: u64, seed: u64) -> Result<Figure> {
         .text(Ink::Black, [0.02, 0.375], Side::Left, "1/3")
         .text(Ink::Black, [0.02, 0.12], Side::Right, "cosine: 0")
         .text(Ink::Blue, [2.3, 0.4], Side::Centre, "uniform")
-        .text(Ink::Vermilion, [2.3, 0.05], Side::Centre, "cosine")
+        .text(Ink::Vermilion, [2.5, 0.045], Side::Centre, "cosine")
         .text(Ink::Vermilion, [-0.6, 0.56], Side::Right, "cosine: ∞ as a → −1");
     Plot {
         name: "3_6_variance",

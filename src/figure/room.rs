@@ -244,14 +244,14 @@ impl SideView {
             [p, next, ..] => Some(direction(p, next, 0.8)),
             _ => None,
         }));
-        // an arrow's head is on no line but its own, lest it seem another's
+        // an arrow is on no line but its own, lest it seem another's
         let legs = || {
             let eye = [self.p(), self.eye()];
             paths.iter().flat_map(|path| segments(&path.line)).chain([eye])
         };
-        let heads_apart = paths.iter().filter_map(|path| segments(&path.line).next()).all(|first| {
-            let tip = direction(first[0], first[1], 0.8);
-            legs().filter(|leg| *leg != first).all(|leg| distance_to(leg, tip) > 0.15)
+        let arrows_apart = paths.iter().filter_map(|path| segments(&path.line).next()).all(|first| {
+            let arrow = [0.55, 0.65, 0.8].map(|at| direction(first[0], first[1], at));
+            legs().filter(|leg| *leg != first).all(|leg| arrow.iter().all(|at| distance_to(leg, *at) > 0.15))
         });
         let off_lines = |at: [f64; 2], least: f64| {
             paths
@@ -265,7 +265,7 @@ impl SideView {
         apart(&vertices, 0.6)
             && apart(&ends, 0.2)
             && apart(&tips, 0.25)
-            && heads_apart
+            && arrows_apart
             && vertices.iter().all(|at| off_lines(*at, 0.2))
             && off_lines(self.p(), 0.5)
             && vertex_normals.chain([self.to_eye()]).all(|tip| off_lines(tip, 0.12))

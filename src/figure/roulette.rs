@@ -152,7 +152,7 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min).min(1.0);
     let most = values.iter().copied().fold(4.0, f64::max);
     // room below for what is said of the marks
-    let bottom = 0.5 * least;
+    let bottom = least * (least / most).powf(0.2);
     let (albedo, v) = (typeset(albedo, 12), typeset(model.visibility(), 12));
     let mut panel = Panel::new(
         &format!("ρ = {albedo}, v = {v}"),
@@ -171,15 +171,15 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
         .text(Ink::Vermilion, [low + 0.02, 2.0 * cost(low + 0.1)], Side::Right, "cost 1/(1 − q)")
         .text(Ink::Blue, [0.93, 0.55 * variance(0.93)], Side::Left, "variance")
         .text(Ink::Green, [edge + 0.06, 300.0], Side::Right, "variance × cost");
-    let mut marked = vec![(q, "● q", Marker::Disc, 1.08)];
+    let mut marked = vec![(q, "● q", Marker::Disc, 0.14)];
     if best > 0.0 && best < 1.0 {
-        marked.push((best, "○ q*", Marker::Ring, 0.66));
+        marked.push((best, "○ q*", Marker::Ring, 0.05));
     }
     for (at, word, marker, row) in marked {
         if product(at).is_finite() {
             panel.marks(word, Ink::Black, marker, [[at, product(at)]]);
             let label = format!("{word} {}: {}", equals(at, 3), typeset(product(at), 3));
-            panel.text(Ink::Black, [low + 0.005, row], Side::Right, &label);
+            panel.note(Ink::Black, [0.0, row], Side::Right, &label);
         }
     }
     Plot {
@@ -209,10 +209,8 @@ pub fn truncation(model: &LightModel, q: f64, max_k: u64, replicates: u64, seed:
     let [short, long] = [max_k, max_k.saturating_mul(2)];
     let roulette = model.roulette(q)?;
     let root = |square: Result<f64>| square.map_or(f64::NAN, f64::sqrt);
-    let costs = [roulette.cost(), model.truncated(short)?.cost(), model.truncated(long)?.cost()];
-    let dearest = costs.into_iter().fold(0.0, f64::max);
-    // two paths of the dearest way at least
-    let first = 10f64.powf((2.0 * dearest - 1e-9).log10().ceil()).max(10.0);
+    // from two paths on
+    let first = 10f64.powf(((2.0 * roulette.cost()).log10() - 1e-9).ceil().max(1.0));
     let last = 1e4 * first;
     let errors = [root(roulette.mean_square_error(first)), root(roulette.mean_square_error(last))];
     let biases = [model.truncated(short)?.bias().abs(), model.truncated(long)?.bias().abs()];
