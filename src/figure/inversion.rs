@@ -294,11 +294,11 @@ pub fn tails(exponential: &Exponential, draws: usize, seed: u64) -> Result<Figur
         .marks("measured", Ink::Green, Marker::Ring, measured)
         .text(Ink::Black, [25.0, 1e-10], Side::Right, "exp(−λx)")
         .text(Ink::Vermilion, [end32, 1e-14], Side::Left, "f32 ends at")
-        .text(Ink::Vermilion, [end32, 1e-15], Side::Left, "24 ln 2 = 16.636")
+        .text(Ink::Vermilion, [end32, 4e-16], Side::Left, "24 ln 2 = 16.636")
         .text(Ink::Blue, [end64, 1e-3], Side::Left, "f64 ends at")
-        .text(Ink::Blue, [end64, 1e-4], Side::Left, "53 ln 2 = 36.737")
+        .text(Ink::Blue, [end64, 4e-5], Side::Left, "53 ln 2 = 36.737")
         .text(Ink::Green, [1.0, 1e-9], Side::Right, &format!("rings: {draws}"))
-        .text(Ink::Green, [1.0, 1e-10], Side::Right, "samples");
+        .text(Ink::Green, [1.0, 4e-11], Side::Right, "samples");
     Plot {
         name: "1_1_tails",
         title: "The tail of inversion ends where the grid of uniform numbers ends".into(),

@@ -150,7 +150,7 @@ impl Axis {
     /// of ten, of which they are multiples.
     pub fn linear(name: &str, low: f64, high: f64) -> Self {
         let size = low.abs().max(high.abs());
-        let power = if (0.01..1e5).contains(&size) || !size.is_normal() { 0.0 } else { size.log10().floor() };
+        let power = if (0.01..1e4).contains(&size) || !size.is_normal() { 0.0 } else { size.log10().floor() };
         let (unit, step) = (10f64.powf(power), round_step((high - low) / 5.0));
         let steps = if step.is_normal() && size / step < 1e14 {
             (low / step - 1e-9).ceil() as i64..=(high / step + 1e-9).floor() as i64

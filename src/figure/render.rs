@@ -156,7 +156,7 @@ fn draw_panel(panel: &Panel, area: &Area<'_>) -> Drawn {
     let frame = Frame {
         panel,
         left: beside * PT,
-        right: f64::from(across) - if panel.bare { 2.0 } else { 8.0 } * PT,
+        right: f64::from(across) - if panel.bare { 2.0 } else { 11.0 } * PT,
         top: 20.0 * PT,
         bottom: f64::from(down) - if panel.bare { 2.0 } else { 30.0 } * PT,
     };

@@ -26,7 +26,7 @@ const PRIMES: [&str; 2] = ["", "′"];
 /// Paths that are looked at, at most, for some that can be drawn.
 const TRIED: u64 = 100_000;
 /// Paths that can be made out, at most, from which those are chosen that can be told apart.
-const CANDIDATES: usize = 100;
+const CANDIDATES: usize = 300;
 
 /// 4.1 and 4.2: up to three paths of two or of three bounces, as they were sampled, from the side: the student's edition, which has room, cube, light, eye and p only, and the solution.
 ///
@@ -250,8 +250,8 @@ impl SideView {
             paths.iter().flat_map(|path| segments(&path.line)).chain([eye])
         };
         let arrows_apart = paths.iter().filter_map(|path| segments(&path.line).next()).all(|first| {
-            let arrow = [0.55, 0.65, 0.8].map(|at| direction(first[0], first[1], at));
-            legs().filter(|leg| *leg != first).all(|leg| arrow.iter().all(|at| distance_to(leg, *at) > 0.15))
+            let arrow = [0.6, 0.8].map(|at| direction(first[0], first[1], at));
+            legs().filter(|leg| *leg != first).all(|leg| arrow.iter().all(|at| distance_to(leg, *at) > 0.1))
         });
         let off_lines = |at: [f64; 2], least: f64| {
             paths

@@ -160,6 +160,15 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
         Axis::log("value (dimensionless)", bottom, 2.0 * most),
     );
     panel.shade(low, edge);
+    // the names stand above and below their lines, on rows of their own
+    let row = |panel: &Panel, value: f64| panel.y.place(value).clamp(0.25, 0.95);
+    let mut rows = [row(&panel, 2.0 * cost(low + 0.1)), row(&panel, 0.55 * variance(0.93))];
+    if let [costs, varies] = &mut rows
+        && (*costs - *varies).abs() < 0.09
+    {
+        *varies = if *costs > 0.5 { *costs - 0.09 } else { *costs + 0.09 };
+    }
+    let [costs_at, varies_at] = rows.map(|row| panel.y.value(row));
     let shaded = 0.5 * (edge - low) / (1.0 - low);
     panel
         .curve_between("variance", Ink::Blue, edge + 1e-6, 0.9995, variance)
@@ -168,8 +177,8 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
         .note(Ink::Black, [shaded.max(0.12), 0.83], Side::Centre, "q ≤ ρ²:")
         .note(Ink::Black, [shaded.max(0.12), 0.74], Side::Centre, "infinite")
         .note(Ink::Black, [shaded.max(0.12), 0.65], Side::Centre, "variance")
-        .text(Ink::Vermilion, [low + 0.02, 2.0 * cost(low + 0.1)], Side::Right, "cost 1/(1 − q)")
-        .text(Ink::Blue, [0.93, 0.55 * variance(0.93)], Side::Left, "variance")
+        .text(Ink::Vermilion, [low + 0.02, costs_at], Side::Right, "cost 1/(1 − q)")
+        .text(Ink::Blue, [0.98, varies_at], Side::Left, "variance")
         .text(Ink::Green, [edge + 0.06, 300.0], Side::Right, "variance × cost");
     let mut marked = vec![(q, "● q", Marker::Disc, 0.14)];
     if best > 0.0 && best < 1.0 {
