@@ -34,25 +34,6 @@ pub(crate) fn shortened(value: f64) -> String {
     }
 }
 
-/// Seven significant digits at most, for a sentence: 1.386294, 2·10⁻⁹, −3, ∞.
-#[cfg(feature = "workbook")]
-pub(crate) fn in_a_text(value: f64) -> String {
-    if !value.is_finite() {
-        return if value > 0.0 { "∞" } else { "no number" }.into();
-    }
-    let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(value);
-    let size = rounded.abs();
-    let text = if size == 0.0 || (1e-4..1e7).contains(&size) {
-        format!("{}", rounded + 0.0)
-    } else {
-        let scientific = format!("{rounded:e}");
-        let (digits, power) = scientific.split_once('e').unwrap_or((&scientific, "0"));
-        let raised = power.chars().filter_map(|c| "⁻⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth("-0123456789".find(c)?));
-        format!("{digits}·10{}", raised.collect::<String>())
-    };
-    text.replace('-', "−")
-}
-
 /// A number to so many digits, trailing zeros left out: 1.2e9.
 pub(crate) fn rounded(value: f64, digits: usize) -> String {
     if value == 0.0 {
@@ -75,6 +56,56 @@ pub(crate) fn two_digits(x: f64) -> String {
     // 0 has no first digit
     let places = if x == 0.0 { 0.0 } else { (1.0 - size.log10().floor()).clamp(0.0, 9.0) };
     format!("{x:.*}", places as usize)
+}
+
+/// For print: so many significant digits, trailing zeros left out, powers of ten where digits would not tell:
+/// 0.000139, 1.5 × 10⁻⁹, −10¹², ∞.
+#[cfg(feature = "workbook")]
+pub(crate) fn typeset(value: f64, digits: usize) -> String {
+    let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
+    let text = match rounded.abs() {
+        0.0 => "0".into(),
+        f64::INFINITY => if rounded < 0.0 { "-∞" } else { "∞" }.into(),
+        size if !(1e-4..1e6).contains(&size) && !size.is_nan() => {
+            let (sign, scientific) = (if rounded < 0.0 { "-" } else { "" }, format!("{size:e}"));
+            let (first, power) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+            let power = power_of_ten(power.parse().unwrap_or(0));
+            if first == "1" { format!("{sign}{power}") } else { format!("{sign}{first} × {power}") }
+        }
+        _ => format!("{rounded}"),
+    };
+    text.replace('-', "−")
+}
+
+/// The same behind “=”, or behind “≈” where digits are left out.
+#[cfg(feature = "workbook")]
+pub(crate) fn equals(value: f64, digits: usize) -> String {
+    let short = typeset(value, digits);
+    let sign = if short == typeset(value, 12) { "=" } else { "≈" };
+    format!("{sign} {short}")
+}
+
+/// A whole multiple of `step`, to the decimal places that steps of 1, 2 or 5 times a power of ten need.
+#[cfg(feature = "workbook")]
+pub(crate) fn in_steps(value: f64, step: f64) -> String {
+    let places = (-(step.log10() + 1e-9).floor()).clamp(0.0, 17.0) as usize;
+    format!("{value:.places$}").replace('-', "−")
+}
+
+/// 10ⁿ
+#[cfg(feature = "workbook")]
+pub(crate) fn power_of_ten(power: i32) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    match power {
+        0 => "1".into(),
+        1 => "10".into(),
+        _ => {
+            let sign = if power < 0 { "⁻" } else { "" };
+            let digits = power.unsigned_abs().to_string();
+            let raised = digits.bytes().filter_map(|digit| DIGITS.get(usize::from(digit - b'0')));
+            format!("10{sign}{}", raised.collect::<String>())
+        }
+    }
 }
 
 /// The unit that suits so many seconds, and how many of it are a second.
@@ -121,17 +152,21 @@ mod tests {
 
     #[cfg(feature = "workbook")]
     #[test]
-    fn a_sentence_has_short_numbers() {
-        for (value, text) in [
-            (4f64.ln(), "1.386294"),
-            (0.1 + 0.2, "0.3"),
-            (-3.0, "−3"),
-            (-0.0, "0"),
-            (2e-9, "2·10⁻⁹"),
-            (-1.25e12, "−1.25·10¹²"),
-            (f64::INFINITY, "∞"),
+    fn print_has_digits_or_powers_of_ten() {
+        for (value, digits, text) in [
+            (0.75, 3, "0.75"),
+            (1.386_294e-4, 3, "0.000139"),
+            (-1.5e-9, 3, "−1.5 × 10⁻⁹"),
+            (9.999e5, 3, "10⁶"),
+            (-1e12, 12, "−10¹²"),
+            (-0.0, 3, "0"),
+            (f64::INFINITY, 3, "∞"),
+            (123_456.0, 12, "123456"),
         ] {
-            assert_eq!(in_a_text(value), text);
+            assert_eq!(typeset(value, digits), text);
         }
+        assert_eq!([equals(0.25, 3), equals(1.386_29, 3)], ["= 0.25", "≈ 1.39"]);
+        assert_eq!([in_steps(-0.5, 0.5), in_steps(20.0, 20.0)], ["−0.5", "20"]);
+        assert_eq!([power_of_ten(-18), power_of_ten(0)], ["10⁻¹⁸", "1"]);
     }
 }

@@ -4,12 +4,13 @@ use std::f64::consts::LN_10;
 
 use rand::distr::Distribution;
 
-use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width, power_of_ten};
+use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
 use super::{Edition, Figure};
 use crate::check::{Exercise, Look, Mistake, Probe, Problem, Unbiased};
 use crate::error::Result;
 use crate::estimator::from_fn;
 use crate::hemisphere::Hemisphere;
+use crate::numbers::power_of_ten;
 
 /// The relative difference taken for none: half of the smaller bias shown.
 const DELTA: f64 = 5e-3;

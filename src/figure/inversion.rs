@@ -6,81 +6,191 @@ use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
 use super::{Edition, Figure};
 use crate::error::{Error, Result};
 use crate::inversion::Exponential;
+use crate::numbers::{equals, typeset};
 use crate::stream::Stream;
 
-/// 1.2: F, F⁻¹ and p, each against its own axis. The solution marks the sample that `u` gives.
+/// Rates at which densities and lengths can be drawn.
+fn drawable(exponential: &Exponential) -> Result<f64> {
+    let rate = exponential.rate();
+    let ok = (1e-290..=1e290).contains(&rate);
+    let allowed = "between 1e-290 and 1e290 to be drawn";
+    if ok { Ok(rate) } else { Err(Error::Parameter { name: "the rate λ", value: rate, allowed }) }
+}
+
+/// 1.2: F, F⁻¹ and p, each against its own axis, over five mean lengths whatever `u` is. The solution has arrows from
+/// u to the sample that it gives; the student's edition has the curves.
 ///
 /// # Errors
-/// If u is not in \[0, 1\].
+/// If u is not in \[0, 1\], or the rate is too large or too small to be drawn.
 pub fn exponential(exponential: &Exponential, u: f64, edition: Edition) -> Result<Figure> {
-    let rate = exponential.rate();
+    let rate = drawable(exponential)?;
     let x = exponential.inverse_cdf(u)?;
-    // five mean lengths; a sample further out than that widens the axis to it
-    let end = (5.0 / rate).max(if x.is_finite() { 1.15 * x } else { 0.0 });
-    let along = || Axis::linear("x (dimensionless)", 0.0, end);
+    let end = 5.0 / rate;
+    let along = |name: &str| Axis::linear(name, 0.0, end);
     let share = |name: &str| Axis::linear(name, 0.0, 1.0);
 
-    let mut cdf = Panel::new("CDF", along(), share("F(x), a probability"));
+    // the axes' names do not say what 1.3 asks
+    let (lambda, given) = (typeset(rate, 12), typeset(u, 12));
+    let heading = format!("CDF, λ = {lambda}");
+    let mut cdf = Panel::new(&heading, along("x (dimensionless)"), share("F(x) (dimensionless)"));
     cdf.curve("F", Ink::Blue, |x| exponential.cdf(x));
-    let mut inverse = Panel::new("Inverse CDF", share("u, a probability"), Axis::linear("F⁻¹(u)", 0.0, end));
+    let mut inverse = Panel::new("Inverse CDF", share("u (dimensionless)"), along("F⁻¹(u) (dimensionless)"));
     inverse.curve("F⁻¹", Ink::Vermilion, |u| exponential.inverse_cdf(u).unwrap_or(f64::NAN));
-    let mut pdf = Panel::new("PDF", along(), Axis::linear("p(x), per unit of x", 0.0, 1.05 * rate));
+    let density = Axis::linear("p(x) (dimensionless)", 0.0, 1.05 * rate);
+    let mut pdf = Panel::new("PDF", along("x (dimensionless)"), density);
     pdf.curve("p", Ink::Green, |x| exponential.pdf(x));
 
-    if edition == Edition::Solution && x.is_finite() {
-        let p = exponential.pdf(x);
-        let beside = if x > 0.6 * end { Side::Left } else { Side::Right };
-        for (panel, at) in [(&mut cdf, [x, u]), (&mut inverse, [u, x]), (&mut pdf, [x, p])] {
-            panel.line("sample", Ink::Black, [[0.0, at[1]], at, [at[0], 0.0]]);
-            panel.marks("sample", Ink::Black, Marker::Disc, [at]);
-        }
-        cdf.text(Ink::Black, [x, u - 0.06], beside, &format!("({x:.3}, {u:.3})"));
-        let side = if u > 0.5 { Side::Left } else { Side::Right };
-        inverse.text(Ink::Black, [u, x + 0.05 * end], side, &format!("({u:.3}, {x:.3})"));
-        pdf.text(Ink::Black, [x, p + 0.04 * rate], beside, &format!("({x:.3}, {p:.3})"));
+    if edition == Edition::Solution {
+        let answer = Sample { u, x, at: rate * x, p: exponential.pdf(x), label: sample_label(rate, u, x) };
+        answer.on_cdf(&mut cdf);
+        answer.on_inverse(&mut inverse);
+        answer.on_pdf(&mut pdf);
     }
     let (title, description) = match edition {
         Edition::Student => (
             format!(
-                "Cumulative distribution, its inverse and density of the exponential distribution, λ = {rate}"
+                "Cumulative distribution, its inverse and density of the exponential distribution, λ = {lambda}"
             ),
             format!(
-                "Three panels: F(x) and p(x) against x, and F⁻¹(u) against u, for λ = {rate}, to be marked."
+                "Three panels: F(x) and p(x) against x, and F⁻¹(u) against u, for λ = {lambda}, to be marked."
             ),
         ),
         Edition::Solution => (
-            format!("Inverting F at u = {u} gives x = {x:.3} (λ = {rate})"),
+            format!("Inverting F at u = {given} gives x {} (λ = {lambda})", equals(x, 4)),
             format!(
-                "Three panels for λ = {rate}: F(x) against x, F⁻¹(u) against u, p(x) against x. A line runs from u = {u} to the curve \
-                 of F and down to x = {x:.3}; the same point is marked on F⁻¹ and on p."
+                "Three panels for λ = {lambda}: F(x) against x, F⁻¹(u) against u, p(x) against x. Arrows lead from \
+                 u = {given} across to the curve of F and down to x {}, and up to the curve of F⁻¹ and across; p \
+                 is marked there.{}",
+                equals(x, 4),
+                if x > end { " That x lies beyond the axes." } else { "" }
             ),
         ),
     };
-    let panels = vec![cdf, inverse, pdf];
     Plot {
         name: "1_2_exponential",
         title,
         description,
         edition,
         width: Width::Page,
-        height_mm: 60.0,
-        columns: 3,
-        panels,
+        height_mm: 132.0,
+        columns: 2,
+        // the density below the cdf, with the same x
+        panels: vec![cdf, inverse, pdf],
     }
     .draw()
 }
 
-/// 1.1: the empirical cdf of `draws` samples beside F, in the band that holds all of F with 95 % confidence.
+/// “x = ln 4 ≈ 1.39”: by way of 1/(1 − u) where that is a whole number, and 1/λ where that is not 1.
+fn sample_label(rate: f64, u: f64, x: f64) -> String {
+    let inverse = 1.0 / (1.0 - u);
+    let whole = inverse.round();
+    let number = equals(x, 3);
+    if !(1.5..=1e6).contains(&whole) || (inverse - whole).abs() > 1e-9 * whole {
+        return format!("x {number}");
+    }
+    if rate == 1.0 { format!("x = ln {whole} {number}") } else { format!("x = (ln {whole})/λ {number}") }
+}
+
+/// The sample that u gives, to be marked; `at` is λx.
+struct Sample {
+    u: f64,
+    x: f64,
+    at: f64,
+    p: f64,
+    label: String,
+}
+
+/// What the axes hold, in mean lengths.
+const LENGTHS: f64 = 5.0;
+
+impl Sample {
+    fn given(&self) -> String {
+        format!("U = {}", typeset(self.u, 12))
+    }
+
+    /// From u across to the curve, and down.
+    fn on_cdf(&self, panel: &mut Panel) {
+        let Self { u, x, at, ref label, .. } = *self;
+        let place = at / LENGTHS;
+        let foot = panel.spot(place, 0.07);
+        if place > 1.0 {
+            let [edge, _] = panel.spot(1.0, u);
+            panel.arrow(Ink::Black, [0.0, u], [edge, u]);
+            panel.note(Ink::Black, [1.0, 0.5], Side::Left, &format!("{label}, beyond the axis →"));
+        } else {
+            panel.arrow(Ink::Black, [0.0, u], [x, u]).arrow(Ink::Black, [x, u], [x, 0.0]);
+            panel.marks("sample", Ink::Black, Marker::Disc, [[x, u]]);
+            if u < 0.2 {
+                // both beside the curve's beginning
+                panel.note(Ink::Black, [0.065, 0.07], Side::Right, label);
+            } else {
+                let side = if place > 0.45 { Side::Left } else { Side::Right };
+                panel.text(Ink::Black, foot, side, label);
+            }
+        }
+        let (start, side) = match u {
+            u if u < 0.2 => (panel.spot(0.065, 0.17), Side::Right),
+            u if u < 0.65 => ([x, u - 0.03], Side::Right),
+            u if u <= 0.9 => ([0.0, u], Side::UpperRight),
+            _ => ([0.0, u], Side::LowerRight),
+        };
+        panel.text(Ink::Black, start, side, &self.given());
+    }
+
+    /// From u up to the curve, and across.
+    fn on_inverse(&self, panel: &mut Panel) {
+        let Self { u, x, at, ref label, .. } = *self;
+        let place = at / LENGTHS;
+        if place > 1.0 {
+            let [_, top] = panel.spot(u, 1.0);
+            panel.arrow(Ink::Black, [u, 0.0], [u, top]);
+            let label = format!("{label}, beyond the axis ↑");
+            panel.note(Ink::Black, [u - 0.1, 0.93], Side::Left, &label);
+        } else {
+            panel.arrow(Ink::Black, [u, 0.0], [u, x]).arrow(Ink::Black, [u, x], [0.0, x]);
+            panel.marks("sample", Ink::Black, Marker::Disc, [[u, x]]);
+            let up = if u < 0.5 { place.max(0.22) } else { place };
+            panel.note(Ink::Black, [0.0, up], Side::UpperRight, label);
+        }
+        let (start, side) = match u {
+            u if u < 0.4 => (panel.spot(0.4, 0.04), Side::Right),
+            u if u < 0.55 => (panel.spot(u, 0.04), Side::Right),
+            _ => (panel.spot(u, 0.07), Side::Left),
+        };
+        panel.text(Ink::Black, start, side, &self.given());
+    }
+
+    /// The density at the sample.
+    fn on_pdf(&self, panel: &mut Panel) {
+        let Self { x, at, p, ref label, .. } = *self;
+        let place = at / LENGTHS;
+        if place > 1.0 {
+            panel.note(Ink::Black, [1.0, 0.5], Side::Left, &format!("{label}, beyond the axis →"));
+            return;
+        }
+        panel.arrow(Ink::Black, [x, 0.0], [x, p]);
+        panel.marks("sample", Ink::Black, Marker::Disc, [[x, p]]);
+        let text = format!("p(x) {}", equals(p, 3));
+        if place > 0.6 {
+            panel.note(Ink::Black, [place, 0.3], Side::Left, &text);
+        } else {
+            panel.text(Ink::Black, [x, p], Side::UpperRight, &text);
+        }
+    }
+}
+
+/// 1.1: ten numbers U carried across to F and down to their samples, and the empirical cdf of `draws` samples beside
+/// F, in the band that holds all of F with 95 % confidence.
 ///
 /// The band is F̂ ± √(ln(2/0.05)/2n) (Dvoretzky, Kiefer & Wolfowitz 1956; Massart 1990), valid for every n.
 ///
 /// # Errors
-/// If there are no draws.
+/// If there are no draws, or the rate is too large or too small to be drawn.
 pub fn empirical_cdf(exponential: &Exponential, draws: usize, seed: u64) -> Result<Figure> {
     if draws == 0 {
         return Err(Error::TooFewDraws { statistic: "an empirical cdf", needed: 1, draws: 0 });
     }
-    let rate = exponential.rate();
+    let rate = drawable(exponential)?;
     let mut rng = Stream::new(seed, 0);
     let mut samples: Vec<f64> = (0..draws).map(|_| exponential.sample(&mut rng)).collect();
     samples.sort_by(f64::total_cmp);
@@ -94,9 +204,32 @@ pub fn empirical_cdf(exponential: &Exponential, draws: usize, seed: u64) -> Resu
     }
     steps.push([end.max(samples.last().copied().unwrap_or(0.0)), 1.0]);
 
+    let along = || Axis::linear("x (dimensionless)", 0.0, end);
+    let lambda = typeset(rate, 12);
+    let mut carried = Panel::new(
+        &format!("From U to X, λ = {lambda}"),
+        along(),
+        Axis::linear("U (dimensionless)", 0.0, 1.0),
+    );
+    let mut ten = Vec::new();
+    for i in 0..10 {
+        let u = 0.05 + 0.1 * f64::from(i);
+        let x = exponential.inverse_cdf(u)?;
+        carried.line("U to X", Ink::Grey, [[0.0, u], [x, u]]).arrow(Ink::Grey, [x, u], [x, 0.0]);
+        ten.push([x, u]);
+    }
+    carried
+        .curve("F", Ink::Black, |x| exponential.cdf(x))
+        .marks("U and X", Ink::Blue, Marker::Disc, ten)
+        .note(Ink::Blue, [0.52, 0.62], Side::Right, "ten U evenly apart:")
+        .note(Ink::Blue, [0.52, 0.54], Side::Right, "across to F, down")
+        .note(Ink::Blue, [0.52, 0.46], Side::Right, "to X = F⁻¹(U),")
+        .note(Ink::Blue, [0.52, 0.38], Side::Right, "close together")
+        .note(Ink::Blue, [0.52, 0.3], Side::Right, "where F is steep");
+
     let mut panel = Panel::new(
-        &format!("{draws} samples, λ = {rate}"),
-        Axis::linear("x (dimensionless)", 0.0, end),
+        &format!("{draws} samples, λ = {lambda}"),
+        along(),
         Axis::linear("share of samples ≤ x", 0.0, 1.0),
     );
     panel
@@ -106,22 +239,27 @@ pub fn empirical_cdf(exponential: &Exponential, draws: usize, seed: u64) -> Resu
             steps.iter().map(|&[x, y]| [x, (y - reach).max(0.0), (y + reach).min(1.0)]),
         )
         .line("empirical cdf", Ink::Blue, steps)
-        .curve("F", Ink::Black, |x| exponential.cdf(x))
-        .text(Ink::Black, [2.1 / rate, 0.62], Side::Right, "thin line: F(x) = 1 − exp(−λx)")
-        .text(Ink::Blue, [2.1 / rate, 0.52], Side::Right, &format!("steps: samples, seed {seed}"))
-        .text(Ink::Blue, [2.1 / rate, 0.42], Side::Right, &format!("band: ±{reach:.3}, 95 % for all x"));
+        .curve("F", Ink::Black, |x| exponential.cdf(x));
+    let told = format!("band: ±{}, 95 % for all x", typeset(reach, 2));
+    panel
+        .note(Ink::Black, [0.4, 0.5], Side::Right, "thin: F(x) = 1 − exp(−λx)")
+        .note(Ink::Blue, [0.4, 0.42], Side::Right, &format!("steps: samples, seed {seed}"))
+        .note(Ink::Blue, [0.4, 0.34], Side::Right, &told);
     Plot {
         name: "1_1_empirical_cdf",
-        title: format!("{draws} exponential samples by inversion against the exact F"),
+        title: format!("Exponential samples by inversion: ten step by step, and {draws} against the exact F"),
         description: format!(
-            "The share of {draws} samples at most x, as steps, with a band of ±{reach:.3} that holds the whole of F with 95 % \
-             confidence; F(x) = 1 − e^(−λx) runs inside the band. λ = {rate}, seed {seed}."
+            "Two panels against x, λ = {lambda}. Left: ten evenly spaced U are carried across to the curve of F and down \
+             to their samples, which lie closest where F is steepest, near 0. Right: the share of {draws} samples at most x, \
+             as steps, with a band of ±{} that holds the whole of F with 95 % confidence; F(x) = 1 − e^(−λx) runs \
+             inside the band (seed {seed}).",
+            typeset(reach, 2)
         ),
         edition: Edition::Solution,
-        width: Width::Column,
-        height_mm: 62.0,
-        columns: 1,
-        panels: vec![panel],
+        width: Width::Page,
+        height_mm: 66.0,
+        columns: 2,
+        panels: vec![carried, panel],
     }
     .draw()
 }
@@ -156,11 +294,11 @@ pub fn tails(exponential: &Exponential, draws: usize, seed: u64) -> Result<Figur
         .marks("measured", Ink::Green, Marker::Ring, measured)
         .text(Ink::Black, [25.0, 1e-10], Side::Right, "exp(−λx)")
         .text(Ink::Vermilion, [end32, 1e-14], Side::Left, "f32 ends at")
-        .text(Ink::Vermilion, [end32, 1e-15], Side::Left, "24 ln 2 = 16.636")
+        .text(Ink::Vermilion, [end32, 4e-16], Side::Left, "24 ln 2 = 16.636")
         .text(Ink::Blue, [end64, 1e-3], Side::Left, "f64 ends at")
-        .text(Ink::Blue, [end64, 1e-4], Side::Left, "53 ln 2 = 36.737")
+        .text(Ink::Blue, [end64, 4e-5], Side::Left, "53 ln 2 = 36.737")
         .text(Ink::Green, [1.0, 1e-9], Side::Right, &format!("rings: {draws}"))
-        .text(Ink::Green, [1.0, 1e-10], Side::Right, "samples");
+        .text(Ink::Green, [1.0, 4e-11], Side::Right, "samples");
     Plot {
         name: "1_1_tails",
         title: "The tail of inversion ends where the grid of uniform numbers ends".into(),

@@ -44,6 +44,18 @@ impl Box2 {
     }
 }
 
+/// About how many points wide a text is: at 8 points a letter is about 5.2 wide, a raised or lowered one about 3.4.
+pub(super) fn width(text: &str) -> f64 {
+    let of = |c: char| {
+        if "₀₁₂₃₄₅₆₇₈₉ₒᵢⱼ′⁰¹²³⁴⁵⁶⁷⁸⁹⁻.,|il()".contains(c) {
+            3.4
+        } else {
+            5.2
+        }
+    };
+    text.chars().map(of).sum()
+}
+
 /// Labels of one drawing, placed one after the other where they are least in the way.
 pub(super) struct Labels {
     /// how many points of print a unit is
@@ -69,10 +81,7 @@ impl Labels {
 
     /// Puts a text beside `at`.
     pub fn place(&mut self, panel: &mut Panel, ink: Ink, at: [f64; 2], text: &str) {
-        // at 8 points a letter is about 5.2 wide, a raised or lowered one about 3.4
-        let width =
-            |c: char| if "₀₁₂₃₄₅₆₇₈₉ₒᵢⱼ′".contains(c) { 3.4 } else { 5.2 };
-        let half = [0.5 * text.chars().map(width).sum::<f64>() / self.scale, 4.6 / self.scale];
+        let half = [0.5 * width(text) / self.scale, 4.6 / self.scale];
         let mut best: Option<(f64, f64, Box2)> = None;
         for ring in 0..5 {
             for step in 0..24 {

@@ -105,7 +105,27 @@ pub fn directions(hemisphere: Hemisphere, count: usize, seed: u64) -> Result<Fig
     .draw()
 }
 
-/// 3.6: the variance of both densities against the exponent a of the light cos^a θ, exact and measured.
+/// f/p of a white surface under a uniform light of radiance 1, against θ: what varies from draw to draw.
+fn reason() -> Panel {
+    let ticks = [(0.0, "0"), (FRAC_PI_4, "π/4"), (FRAC_PI_2, "π/2")];
+    let mut panel = Panel::new(
+        "Why, for the uniform light (a = 0)",
+        Axis::linear("θ (radians)", 0.0, FRAC_PI_2).with_ticks(ticks),
+        Axis::linear("f/p (W m⁻² sr⁻¹)", 0.0, 2.2),
+    );
+    panel
+        .curve("uniform: f/p = 2 cos θ", Ink::Blue, |t| 2.0 * t.cos())
+        .level("cosine: f/p = 1", Ink::Vermilion, 1.0)
+        .note(Ink::Blue, [0.42, 0.88], Side::Right, "uniform directions: 2 cos θ,")
+        .note(Ink::Blue, [0.42, 0.79], Side::Right, "varies from draw to draw")
+        .note(Ink::Vermilion, [0.02, 0.35], Side::Right, "cosine directions: 1,")
+        .note(Ink::Vermilion, [0.02, 0.26], Side::Right, "the mean itself in every draw")
+        .note(Ink::Vermilion, [0.02, 0.17], Side::Right, "p is proportional to f");
+    panel
+}
+
+/// 3.6: f/p against θ for both densities, which is the reason, and the variance of both against the exponent a of
+/// the light cos^a θ, exact and measured.
 ///
 /// # Errors
 /// If it cannot be drawn.
@@ -151,20 +171,20 @@ pub fn variance_against_exponent(draws: u64, seed: u64) -> Result<Figure> {
         .text(Ink::Black, [0.02, 0.375], Side::Left, "1/3")
         .text(Ink::Black, [0.02, 0.12], Side::Right, "cosine: 0")
         .text(Ink::Blue, [2.3, 0.4], Side::Centre, "uniform")
-        .text(Ink::Vermilion, [2.3, 0.05], Side::Centre, "cosine")
+        .text(Ink::Vermilion, [2.5, 0.045], Side::Centre, "cosine")
         .text(Ink::Vermilion, [-0.6, 0.56], Side::Right, "cosine: ∞ as a → −1");
     Plot {
         name: "3_6_variance",
         title: "Cosine-weighted directions win for a > −½, uniform ones below".into(),
         description: format!(
-            "Variance of one draw against the exponent a of the light cos^a θ. Uniform: 0 at a = −1, 1/3 at a = 0. Cosine: infinite as a → −1, 0 at a = 0. Both are 2/9 at \
+            "Left: f/p against θ under a uniform light; 2 cos θ for uniform directions, 1 everywhere for cosine-weighted ones, whose p is proportional to f. Right: variance of one draw against the exponent a of the light cos^a θ. Uniform: 0 at a = −1, 1/3 at a = 0. Cosine: infinite as a → −1, 0 at a = 0. Both are 2/9 at \
              a = −½. Points: variances of {draws} draws, seed {seed}."
         ),
         edition: Edition::Solution,
-        width: Width::Column,
+        width: Width::Page,
         height_mm: 66.0,
-        columns: 1,
-        panels: vec![panel],
+        columns: 2,
+        panels: vec![reason(), panel],
     }
     .draw()
 }

@@ -30,6 +30,7 @@ pub use trade::trade;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::error::{Error, Result};
 
@@ -150,15 +151,18 @@ use resvg::usvg::fontdb as usvg_fonts;
 #[cfg(feature = "pdf")]
 use svg2pdf::usvg::fontdb as usvg_fonts;
 
-/// Writes a file so that it appears whole or not at all, and its folder if need be.
+/// Writes a file so that it appears whole or not at all, and its folder if need be. Of several who write the same
+/// file at once, in this process or another, each writes a whole one, and the last one's stays.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     let failed =
         |error: std::io::Error| Error::Write { path: path.display().to_string(), reason: error.to_string() };
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(failed)?;
     }
+    // a name that nobody else writes to
+    static COUNT: AtomicU64 = AtomicU64::new(0);
     let mut part = path.as_os_str().to_owned();
-    part.push(".part");
+    part.push(format!(".{}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
     fs::write(&part, bytes).and_then(|()| fs::rename(&part, path)).map_err(|error| {
         // whatever was begun goes away again; if even that fails, the first error is the one to tell
         let _ = fs::remove_file(&part);
@@ -219,6 +223,24 @@ mod tests {
             fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
         left.sort();
         assert_eq!(left, ["deep", "taken"]);
+        fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn writers_of_one_file_do_not_disturb_each_other() {
+        let folder = std::env::temp_dir().join(format!("unbiased-writers-{}", std::process::id()));
+        let figure = integrand().unwrap();
+        let write = || (0..50).map(|_| figure.save(&folder).map(|_| ())).collect::<Result<()>>();
+        std::thread::scope(|scope| {
+            let writers: Vec<_> = (0..8).map(|_| scope.spawn(write)).collect();
+            assert!(writers.into_iter().all(|writer| writer.join().unwrap().is_ok()));
+        });
+        assert_eq!(fs::read_to_string(folder.join("3_2_integrand.svg")).unwrap(), figure.svg());
+        let left = fs::read_dir(&folder).unwrap().count();
+        assert_eq!(left, figure.save(&folder).unwrap().len());
+        // a file where the folder should be
+        let refused = figure.save(&folder.join("3_2_integrand.svg")).unwrap_err().to_string();
+        assert!(refused.contains("could not be written"), "{refused}");
         fs::remove_dir_all(&folder).unwrap();
     }
 }

@@ -9,6 +9,7 @@ use crate::error::Result;
 use crate::estimate::Estimate;
 use crate::estimator::{Estimator, from_fn};
 use crate::hemisphere::Hemisphere::{Cosine, Uniform};
+use crate::numbers::typeset;
 use crate::paths::{Bounces, FindLight, Paths, reflected};
 use crate::run::{Budget, Run, estimate};
 use crate::stream::Stream;
@@ -54,7 +55,7 @@ pub fn two_bounces_converging(room: &BoxRoom, seed: u64) -> Result<Figure> {
     );
     if let Some(truth) = truth {
         panel.level("truth", Ink::Black, truth);
-        panel.text(Ink::Black, [9e4, 0.62 * truth], Side::Left, &format!("truth {truth:.6}"));
+        panel.note(Ink::Black, [1.0, 0.31], Side::Left, &format!("truth {}", typeset(truth, 5)));
     }
     for (series, ink, estimator) in [
         ("light by chance", Ink::Green, &chance as &dyn Estimator),
@@ -215,14 +216,8 @@ pub fn radiance_by_bounces(room: &BoxRoom, seed: u64) -> Result<Figure> {
     panel.bars("estimated", Ink::Vermilion, 0.7, above_0(&found).iter().map(|[k, y, ..]| [*k, *y]));
     panel.error_bars("estimated", Ink::Black, Marker::Dot, above_0(&found));
     for &[k, y, ..] in &all {
-        let text = match y {
-            y if y >= 1e4 || (y > 0.0 && y < 1e-3) => format!("{y:.0e}"),
-            y if y > 0.0 => {
-                format!("{y:.places$}", places = (2.0 - y.log10().floor()).clamp(0.0, 5.0) as usize)
-            }
-            // a bar of no height, at the foot of the axis
-            _ => "0".into(),
-        };
+        // a bar of no height is at the foot of the axis
+        let text = typeset(y, 3);
         panel.text(Ink::Black, [k, y.max(low)], Side::Above, &text);
     }
     let list = |ks: Vec<String>| ks.join(", ");

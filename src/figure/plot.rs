@@ -3,13 +3,16 @@
 use std::fmt::Write as _;
 
 use super::{Edition, Figure, render, six_digits};
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::numbers::{in_steps, power_of_ten, typeset};
 
 /// How wide a figure is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Width {
     /// One column, 85 mm.
     Column,
+    /// A drawing to draw into, 150 mm.
+    Drawing,
     /// The page, 170 mm.
     Page,
 }
@@ -18,6 +21,7 @@ impl Width {
     pub fn millimetres(self) -> f64 {
         match self {
             Self::Column => 85.0,
+            Self::Drawing => 150.0,
             Self::Page => 170.0,
         }
     }
@@ -58,6 +62,10 @@ pub(crate) enum Side {
     Left,
     Right,
     Above,
+    /// Above the point, beginning there.
+    UpperRight,
+    /// Below the point, beginning there.
+    LowerRight,
     Centre,
 }
 
@@ -102,6 +110,12 @@ pub(crate) enum Item {
         points: Vec<[f64; 3]>,
         texts: Vec<String>,
     },
+    /// a marker that says to which points the text beside it belongs
+    Key {
+        ink: Ink,
+        marker: Marker,
+        at: [f64; 2],
+    },
     /// a region between two values of x
     Shade {
         from: f64,
@@ -132,26 +146,75 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// From `low` to `high`, with about six round ticks.
+    /// From `low` to `high`, with about six round ticks. Where their digits would not tell, the name holds a power
+    /// of ten, of which they are multiples.
     pub fn linear(name: &str, low: f64, high: f64) -> Self {
-        let step = round_step((high - low) / 5.0);
-        let places = (-step.log10().floor()).max(0.0) as usize;
-        let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
-        let ticks = (first..=last).map(|i| {
-            let at = i as f64 * step;
-            (at, format!("{at:.places$}").replace('-', "−"))
-        });
-        Self { name: name.into(), low, high, logarithmic: false, ticks: ticks.collect() }
+        let size = low.abs().max(high.abs());
+        let power = if (0.01..1e4).contains(&size) || !size.is_normal() { 0.0 } else { size.log10().floor() };
+        let (unit, step) = (10f64.powf(power), round_step((high - low) / 5.0));
+        let steps = if step.is_normal() && size / step < 1e14 {
+            (low / step - 1e-9).ceil() as i64..=(high / step + 1e-9).floor() as i64
+        } else {
+            // what cannot be drawn is said of the whole figure
+            1..=0
+        };
+        let ticks = steps.map(|i| (i as f64 * step, in_steps(i as f64 * step / unit, step / unit))).collect();
+        let name = if power == 0.0 { name.into() } else { in_units(name, &power_of_ten(power as i32)) };
+        Self { name, low, high, logarithmic: false, ticks }
     }
 
-    /// From `low` to `high` > 0, logarithmic, with ticks at powers of ten.
+    /// From `low` to `high` > 0, logarithmic, with ticks at powers of ten, or between them where there are few.
     pub fn log(name: &str, low: f64, high: f64) -> Self {
-        let (first, last) = ((low.log10() - 1e-9).ceil() as i32, (high.log10() + 1e-9).floor() as i32);
+        let (from, to) = (low.log10() - 1e-9, high.log10() + 1e-9);
+        // what cannot be drawn is said of the whole figure
+        let (first, last) =
+            if (to - from).is_finite() { (from.ceil() as i32, to.floor() as i32) } else { (1, 0) };
         let every = ((last - first) / 6).max(1);
-        let ticks = (first..=last)
-            .filter(|power| (power - first) % every == 0)
-            .map(|power| (10f64.powi(power), power_of_ten(power)));
-        Self { name: name.into(), low, high, logarithmic: true, ticks: ticks.collect() }
+        let power = |power| (10f64.powi(power), power_of_ten(power));
+        let ticks = if last > first {
+            (first..=last).filter(|power| (power - first) % every == 0).map(power).collect()
+        } else {
+            let digits = (first - 1..=last).flat_map(|power| [1.0, 2.0, 5.0].map(|d| d * 10f64.powi(power)));
+            digits.filter(|at| (low..=high).contains(at)).map(|at| (at, typeset(at, 1))).collect()
+        };
+        Self { name: name.into(), low, high, logarithmic: true, ticks }
+    }
+
+    /// Whether numbers of this size can be told apart, and drawn.
+    pub fn can_be_drawn(&self) -> bool {
+        let sizes = 1e-300..1e300;
+        let whole = self.low.is_finite() && self.high.is_finite() && self.low < self.high;
+        let from = if self.logarithmic { self.low } else { self.high - self.low };
+        let apart = self.logarithmic || from > 1e-12 * self.low.abs().max(self.high.abs());
+        whole && apart && sizes.contains(&from) && sizes.contains(&self.high.abs().max(self.low.abs()))
+    }
+
+    /// The ticks on an axis of this length whose labels, each of this size, do not touch: all of them, or every
+    /// second, and so on, counted from 0 if it is one of them.
+    pub fn legible(&self, length: f64, size: impl Fn(&str) -> f64) -> Vec<(f64, &str)> {
+        let visible: Vec<(f64, &str)> = self
+            .ticks
+            .iter()
+            .filter(|(at, _)| (-1e-9..=1.0 + 1e-9).contains(&self.place(*at)))
+            .map(|(at, label)| (*at, label.as_str()))
+            .collect();
+        let zero = visible.iter().position(|(at, _)| *at == 0.0).unwrap_or(0);
+        let kept = |every: usize| visible.iter().copied().skip(zero % every).step_by(every);
+        let free = |every: &usize| {
+            kept(*every).zip(kept(*every).skip(1)).all(|((a, left), (b, right))| {
+                (self.place(b) - self.place(a)).abs() * length >= 0.5 * (size(left) + size(right))
+            })
+        };
+        kept((1..=visible.len()).find(free).unwrap_or(1)).collect()
+    }
+
+    /// The value at a place between 0, the low end, and 1.
+    pub fn value(&self, place: f64) -> f64 {
+        if self.logarithmic {
+            self.low * (self.high / self.low).powf(place)
+        } else {
+            self.low + place * (self.high - self.low)
+        }
     }
 
     /// With these ticks instead.
@@ -182,18 +245,14 @@ fn round_step(rough: f64) -> f64 {
     factor * power
 }
 
-/// 10ⁿ
-pub(crate) fn power_of_ten(power: i32) -> String {
-    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    match power {
-        0 => "1".into(),
-        1 => "10".into(),
-        _ => {
-            let sign = if power < 0 { "⁻" } else { "" };
-            let digits = power.unsigned_abs().to_string();
-            let raised = digits.bytes().filter_map(|digit| DIGITS.get(usize::from(digit - b'0')));
-            format!("10{sign}{}", raised.collect::<String>())
-        }
+/// An axis's name with this factor of its unit.
+fn in_units(name: &str, factor: &str) -> String {
+    if let Some(name) = name.strip_suffix(" (dimensionless)") {
+        format!("{name} ({factor})")
+    } else if let Some((quantity, unit)) = name.strip_suffix(')').and_then(|name| name.rsplit_once(" (")) {
+        format!("{quantity} ({factor} {unit})")
+    } else {
+        format!("{name} ({factor})")
     }
 }
 
@@ -204,12 +263,14 @@ pub(crate) struct Panel {
     pub x: Axis,
     pub y: Axis,
     pub items: Vec<Item>,
+    /// a drawing, without axes
+    pub bare: bool,
 }
 
 impl Panel {
     /// Empty axes under a heading.
     pub fn new(heading: &str, x: Axis, y: Axis) -> Self {
-        Self { heading: heading.into(), x, y, items: Vec::new() }
+        Self { heading: heading.into(), x, y, items: Vec::new(), bare: false }
     }
 
     /// A curve through `points`.
@@ -323,6 +384,22 @@ impl Panel {
         self.add(Item::Text { ink, at, side, text: text.into() })
     }
 
+    /// A text beside the point at these parts of the axes, whatever their numbers.
+    pub fn note(&mut self, ink: Ink, [across, up]: [f64; 2], side: Side, text: &str) -> &mut Self {
+        let at = self.spot(across, up);
+        self.text(ink, at, side, text)
+    }
+
+    /// A marker that says to which points a text beside it belongs.
+    pub fn key(&mut self, ink: Ink, marker: Marker, at: [f64; 2]) -> &mut Self {
+        self.add(Item::Key { ink, marker, at })
+    }
+
+    /// The point at these parts of the axes, whatever their numbers.
+    pub fn spot(&self, across: f64, up: f64) -> [f64; 2] {
+        [self.x.value(across), self.y.value(up)]
+    }
+
     fn add(&mut self, item: Item) -> &mut Self {
         self.items.push(item);
         self
@@ -354,15 +431,27 @@ impl Plot {
             Edition::Solution => "",
         };
         let name = format!("{}{suffix}", self.name);
+        let axes = self.panels.iter().flat_map(|panel| [&panel.x, &panel.y]);
+        if let Some(axis) = axes.into_iter().find(|axis| !axis.can_be_drawn()) {
+            let [low, high] = [axis.low, axis.high].map(|end| typeset(end, 3));
+            let reason = format!("no axis can be drawn from {low} to {high} ({})", axis.name);
+            return Err(Error::Draft { what: name, reason });
+        }
         let svg = render::svg(self, &name)?;
         Ok(Figure { svg, csv: self.csv(), title: self.title.clone(), edition: self.edition, name })
     }
 
-    /// All points drawn, a row each; the columns low and high are those of bands and error bars.
+    /// All points drawn, a row each; the columns low and high are those of bands and error bars. What is no number
+    /// has no row, nor have, for the student, curves in colour: what is to be found on them would be among the numbers.
     fn csv(&self) -> String {
         let mut csv = String::from("panel,series,x,y,low,high\n");
         for panel in &self.panels {
             for item in &panel.items {
+                let in_colour =
+                    matches!(item, Item::Line { ink, .. } if !matches!(ink, Ink::Black | Ink::Grey));
+                if in_colour && self.edition == Edition::Student {
+                    continue;
+                }
                 let (series, rows): (_, Vec<[Option<f64>; 4]>) = match item {
                     Item::Line { series, points, .. }
                     | Item::Marks { series, points, .. }
@@ -380,9 +469,11 @@ impl Plot {
                         series,
                         points.iter().map(|&[x, value, _]| [Some(x), Some(value), None, None]).collect(),
                     ),
-                    Item::Shade { .. } | Item::Arrow { .. } | Item::Text { .. } => continue,
+                    Item::Key { .. } | Item::Shade { .. } | Item::Arrow { .. } | Item::Text { .. } => {
+                        continue;
+                    }
                 };
-                for row in rows {
+                for row in rows.into_iter().filter(|row| !row.iter().flatten().any(|cell| cell.is_nan())) {
                     // writing to a String cannot fail
                     let _ = write!(csv, "{},{}", quoted(&panel.heading), quoted(series));
                     for cell in row {
@@ -417,7 +508,11 @@ mod tests {
         assert_eq!(labels(Axis::linear("x", 0.0, 40.0)), ["0", "10", "20", "30", "40"]);
         assert_eq!(labels(Axis::log("x", 1.0, 1e4)), ["1", "10", "10²", "10³", "10⁴"]);
         assert_eq!(labels(Axis::log("x", 0.002, 50.0)), ["10⁻²", "10⁻¹", "1", "10"]);
-        assert_eq!(power_of_ten(-18), "10⁻¹⁸");
+        assert_eq!(labels(Axis::log("x", 0.3, 7.0)), ["0.5", "1", "2", "5"]);
+        assert_eq!(labels(Axis::linear("x", 0.0, 5e-4)), ["0", "1", "2", "3", "4", "5"]);
+        assert_eq!(Axis::linear("x (dimensionless)", 0.0, 5e-4).name, "x (10⁻⁴)");
+        assert_eq!(Axis::linear("L (W m⁻² sr⁻¹)", 0.0, 2e9).name, "L (10⁹ W m⁻² sr⁻¹)");
+        assert_eq!(Axis::linear("p(x)", 0.0, 2e9).name, "p(x) (10⁹)");
     }
 
     #[test]

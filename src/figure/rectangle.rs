@@ -4,6 +4,7 @@ use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
 use super::{Edition, Figure};
 use crate::error::Result;
 use crate::estimator::{Estimator, from_fn};
+use crate::numbers::typeset;
 use crate::rectangle::{Integrand, Rectangle};
 use crate::run::{Budget, estimate};
 
@@ -11,7 +12,7 @@ use crate::run::{Budget, estimate};
 const EVALUATIONS: [u64; 7] = [4, 16, 64, 256, 1024, 4096, 16384];
 
 /// Where the names of the curves begin.
-const LAST_X: f64 = 17e3;
+const LAST_X: f64 = 30e3;
 
 /// Estimates that each measured error is the root mean square of: it is good to about 1/√(2 · 200) = 5 %.
 const REPEATS: u64 = 200;
@@ -110,7 +111,8 @@ pub fn sampling_errors(rectangle: Rectangle, seed: u64) -> Result<Figure> {
     let mut left = panel("Independent pairs", &test_set);
     guide(&mut left, &test_set);
     let right = panel("e^(−x²−y²), points placed four ways", &ways);
-    let ([a, b], [c, d]) = (rectangle.x_range(), rectangle.y_range());
+    let ([a, b], [c, d]) =
+        (rectangle.x_range().map(|end| typeset(end, 12)), rectangle.y_range().map(|end| typeset(end, 12)));
     Plot {
         name: "2_1_rmse",
         title: "Errors against evaluations: four times the pairs halve the error, better placed points do more".into(),
@@ -142,11 +144,11 @@ fn panel(heading: &str, curves: &[Curve]) -> Panel {
     let all = || curves.iter().flat_map(|curve| curve.measured.iter().chain(curve.exact.iter().flatten()));
     let low = all().fold(f64::INFINITY, |low, [_, y]| low.min(*y));
     let high = all().fold(0.0, |high: f64, [_, y]| high.max(*y));
-    let [low, high] = if low < high { [low * 0.3, high * 1.5] } else { [0.1, 10.0] };
+    let [low, high] = if low <= high { [low * 0.3, high * 1.5] } else { [0.1, 10.0] };
     let ticks = [(1.0, "1"), (10.0, "10"), (100.0, "10²"), (1000.0, "10³"), (1e4, "10⁴")];
     let mut panel = Panel::new(
         heading,
-        Axis::log("evaluations of f (dimensionless)", 3.0, 4e6).with_ticks(ticks),
+        Axis::log("evaluations of f (dimensionless)", 3.0, 8e6).with_ticks(ticks),
         Axis::log("RMSE (units of ∫∫ f dx dy)", low, high),
     );
     for curve in curves {
@@ -156,21 +158,50 @@ fn panel(heading: &str, curves: &[Curve]) -> Panel {
         panel.line(&format!("{name}, {series}"), curve.ink, drawn.clone());
         panel.marks(&format!("{name}, measured"), curve.ink, curve.marker, curve.measured.clone());
     }
-    // names from the bottom up, each line at its curve's end or as far above the last one as it takes to read
-    // both
+    // a name stands at its curve's end, or as near as the others leave room; its marker says whose it is
     let mut by_height: Vec<_> = curves.iter().collect();
     by_height.sort_by(|a, b| a.end().total_cmp(&b.end()));
-    let gap = (high / low).powf(0.05);
-    let mut next = low;
-    for curve in by_height {
-        let mut y = curve.end().max(next);
-        for line in curve.label.lines().rev() {
-            panel.text(curve.ink, [LAST_X, y], Side::Right, line);
-            y *= gap;
+    const LINE: f64 = 0.05;
+    let wanted: Vec<_> = by_height
+        .iter()
+        .map(|curve| (panel.y.place(curve.end()), LINE * curve.label.lines().count() as f64))
+        .collect();
+    for (curve, middle) in by_height.iter().zip(apart(&wanted)) {
+        let end = [16_384.0, curve.end()];
+        let [_, y] = panel.spot(0.0, middle);
+        panel.line("name", Ink::Grey, [end, [LAST_X, y]]).key(curve.ink, curve.marker, [1.2 * LAST_X, y]);
+        let lines = curve.label.lines().count() as f64;
+        for (line, text) in curve.label.lines().enumerate() {
+            let [_, y] = panel.spot(0.0, middle + LINE * (0.5 * (lines - 1.0) - line as f64));
+            panel.text(curve.ink, [1.25 * LAST_X, y], Side::Right, text);
         }
-        next = y;
     }
     panel
+}
+
+/// Middles of things of these heights, sorted, as near as can be to where they want to be without overlapping: those
+/// that would are put about the mean of their wishes.
+fn apart(wanted: &[(f64, f64)]) -> Vec<f64> {
+    // blocks of neighbours that touch: how many, their height, and the sum of where their block would begin
+    let mut blocks: Vec<(usize, f64, f64)> = Vec::new();
+    let begins = |&(count, _, sum): &(usize, f64, f64)| sum / count as f64;
+    for &(middle, height) in wanted {
+        let mut block = (1, height, middle - 0.5 * height);
+        while let Some(below) = blocks.pop_if(|below| begins(below) + below.1 > begins(&block)) {
+            block = (below.0 + block.0, below.1 + block.1, below.2 + block.2 - block.0 as f64 * below.1);
+        }
+        blocks.push(block);
+    }
+    let mut heights = wanted.iter().map(|(_, height)| height);
+    let mut middles = Vec::new();
+    for block in &blocks {
+        let mut at = begins(block).clamp(0.0, (1.0 - block.1).max(0.0));
+        for height in heights.by_ref().take(block.0) {
+            middles.push(at + 0.5 * height);
+            at += height;
+        }
+    }
+    middles
 }
 
 /// A line of slope −1/2 below the curves.
@@ -192,7 +223,9 @@ pub fn running_means(rectangle: Rectangle, seed: u64) -> Result<Figure> {
     let truth = Integrand::Gaussian.integral(&rectangle).unwrap_or(f64::NAN);
     // four tenths of the standard deviation: the interval's half width at about n = 25
     let spread = Integrand::Gaussian.variance(&rectangle).unwrap_or(1.0).sqrt();
-    let reach = if spread.is_normal() { 0.4 * spread } else { 1.0 };
+    // where f is all but constant, what can be told apart
+    let least = 1e-4 * truth.abs();
+    let reach = if spread.is_finite() && spread.max(least) > 0.0 { (0.4 * spread).max(least) } else { 1.0 };
     let (first, last) = (10.0, 1e5);
     let mut panels = Vec::new();
     for seed in (0..3).map(|i| seed.wrapping_add(i)) {
@@ -205,7 +238,7 @@ pub fn running_means(rectangle: Rectangle, seed: u64) -> Result<Figure> {
             band.push([n, low, high]);
         }
         let x = Axis::log("n pairs (dimensionless)", first, last);
-        let y = Axis::linear("mean of A f(X, Y)", truth - reach, truth + reach);
+        let y = Axis::linear("mean of area × f(X, Y)", truth - reach, truth + reach);
         let mut panel = Panel::new(&format!("Seed {seed}"), x, y);
         panel.band("95 % interval", Ink::Blue, band).level("truth", Ink::Black, truth).line(
             "mean of n",
@@ -214,20 +247,27 @@ pub fn running_means(rectangle: Rectangle, seed: u64) -> Result<Figure> {
         );
         if panels.is_empty() {
             panel
-                .text(Ink::Black, [last, truth - 0.62 * reach], Side::Left, &format!("thin line: {truth:.6}"))
+                .text(
+                    Ink::Black,
+                    [last, truth - 0.62 * reach],
+                    Side::Left,
+                    &format!("thin line: {}", typeset(truth, 6)),
+                )
                 .text(Ink::Blue, [last, truth - 0.75 * reach], Side::Left, "band: 95 % interval")
                 .text(Ink::Blue, [last, truth - 0.88 * reach], Side::Left, "from s/√n so far");
         }
         panels.push(panel);
     }
-    let ([a, b], [c, d]) = (rectangle.x_range(), rectangle.y_range());
+    let ([a, b], [c, d]) =
+        (rectangle.x_range().map(|end| typeset(end, 12)), rectangle.y_range().map(|end| typeset(end, 12)));
     Plot {
         name: "2_1_running_mean",
         title: "Three runs of the same estimator close in on the truth, as fast as their own error bars say".into(),
         description: format!(
-            "Three panels, one a seed: the mean of n independent draws of A e^(−X²−Y²) over [{a}, {b}] × [{c}, \
+            "Three panels, one a seed: the mean of n independent draws of area × e^(−X²−Y²) over [{a}, {b}] × [{c}, \
              {d}] against n from 10 to 100 000 on a logarithmic axis, in its 95 % interval, which narrows as \
-             1/√n; a thin line at the truth, {truth:.6}."
+             1/√n; a thin line at the truth, {}.",
+            typeset(truth, 6)
         ),
         edition: Edition::Solution,
         width: Width::Page,
@@ -236,4 +276,21 @@ pub fn running_means(rectangle: Rectangle, seed: u64) -> Result<Figure> {
         panels,
     }
     .draw()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_move_no_further_than_they_must() {
+        assert_eq!(apart(&[(0.2, 0.1), (0.5, 0.1)]), [0.2, 0.5]);
+        let moved = apart(&[(0.2, 0.1), (0.5, 0.1), (0.5, 0.1), (0.5, 0.2)]);
+        let middle = 0.5 * (moved[1] - 0.05 + moved[3] + 0.1);
+        assert!(moved[0] == 0.2 && (0.45..0.55).contains(&middle), "{moved:?}");
+        for (pair, gap) in moved.windows(2).zip([0.1, 0.1, 0.15]) {
+            assert!(pair[1] - pair[0] >= gap - 1e-12, "{moved:?}");
+        }
+        assert_eq!(apart(&[(0.0, 0.1), (1.0, 0.1)]), [0.05, 0.95]);
+    }
 }

@@ -8,7 +8,8 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontFamily, register_font};
 
-use super::plot::{Axis, Ink, Item, Marker, Panel, Plot, Side};
+use super::labels::width;
+use super::plot::{Ink, Item, Marker, Panel, Plot, Side};
 use crate::error::{Error, Result};
 
 /// Lattice units in a millimetre: ten for each CSS pixel of 1/96 inch.
@@ -25,6 +26,9 @@ const DASHES: [(f64, &str); 3] = [(0.991, "75 30"), (0.992, "90 30 15 30"), (0.9
 
 /// The opacity that says of a text that it stands on a colour, where a white edge would be in the way.
 const ON_COLOUR: f64 = 0.994;
+
+/// Fonts with every sign that is drawn, in the order in which they are looked for.
+const FONTS: &str = "font-family=\"DejaVu Sans, Noto Sans, Noto Sans Math, STIX Two Math, sans-serif\"";
 
 /// A text's white edge.
 const EDGE: &str = " stroke=\"#FFFFFF\" stroke-width=\"24\" paint-order=\"stroke\"";
@@ -87,6 +91,12 @@ impl Frame<'_> {
         inside(self.panel.x.place(x)) && inside(self.panel.y.place(y))
     }
 
+    /// Whether a text there would be on the axes or just beside them.
+    fn is_near(&self, [x, y]: [f64; 2]) -> bool {
+        let near = |place: f64| (-0.25..=1.25).contains(&place);
+        near(self.panel.x.place(x)) && near(self.panel.y.place(y))
+    }
+
     /// The runs of a curve that lie inside the axes, on the lattice.
     fn clip(&self, points: &[[f64; 2]]) -> Vec<Vec<(i32, i32)>> {
         let (x_axis, y_axis) = (&self.panel.x, &self.panel.y);
@@ -139,15 +149,16 @@ fn clip_segment(from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
 }
 
 fn draw_panel(panel: &Panel, area: &Area<'_>) -> Drawn {
-    let (width, height) = area.dim_in_pixel();
+    let (across, down) = area.dim_in_pixel();
     let widest = panel.y.ticks.iter().map(|(_, label)| label.chars().count()).max().unwrap_or(0) as f64;
+    // a few characters may all be wide ones, many are not
+    let beside = if panel.bare { 2.0 } else { 20.0 + 5.4 * widest.min(8.0) + 4.4 * (widest - 8.0).max(0.0) };
     let frame = Frame {
         panel,
-        // a few characters may all be wide ones, many are not
-        left: (20.0 + 5.4 * widest.min(8.0) + 4.4 * (widest - 8.0).max(0.0)) * PT,
-        right: f64::from(width) - 8.0 * PT,
+        left: beside * PT,
+        right: f64::from(across) - if panel.bare { 2.0 } else { 11.0 } * PT,
         top: 20.0 * PT,
-        bottom: f64::from(height) - 30.0 * PT,
+        bottom: f64::from(down) - if panel.bare { 2.0 } else { 30.0 } * PT,
     };
     for item in &panel.items {
         if let Item::Shade { from, to } = *item {
@@ -167,6 +178,11 @@ fn draw_axes(frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
     let thin = INK.stroke_width((0.5 * PT) as u32);
     let tick = 3.0 * PT;
     let corner = |x: f64, y: f64| (x.round() as i32, y.round() as i32);
+    let above = corner(frame.left, 4.0 * PT);
+    area.draw(&Text::new(heading.clone(), above, bold(9.0, &INK)))?;
+    if frame.panel.bare {
+        return Ok(());
+    }
     area.draw(&PathElement::new(
         vec![
             corner(frame.left, frame.top),
@@ -175,13 +191,14 @@ fn draw_axes(frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
         ],
         thin,
     ))?;
-    for (at, label) in visible(x) {
+    let [across, up] = [frame.right - frame.left, frame.bottom - frame.top].map(|length| length / PT);
+    for (at, label) in x.legible(across, |label| width(label) + 5.0) {
         let (column, row) = frame.at([at, y.low]);
         area.draw(&PathElement::new(vec![(column, row), (column, row + tick as i32)], thin))?;
         let below = row + (1.6 * tick) as i32;
         area.draw(&Text::new(label.to_string(), (column, below), font(8.0, &INK, HPos::Center, VPos::Top)))?;
     }
-    for (at, label) in visible(y) {
+    for (at, label) in y.legible(up, |_| 10.0) {
         let (column, row) = frame.at([x.low, at]);
         area.draw(&PathElement::new(vec![(column - tick as i32, row), (column, row)], thin))?;
         let beside = column - (1.7 * tick) as i32;
@@ -191,16 +208,7 @@ fn draw_axes(frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
     area.draw(&Text::new(x.name.clone(), middle, font(8.5, &INK, HPos::Center, VPos::Top)))?;
     let beside = corner(1.0 * PT, 0.5 * (frame.top + frame.bottom));
     let upright = font(8.5, &INK, HPos::Center, VPos::Top).transform(FontTransform::Rotate270);
-    area.draw(&Text::new(y.name.clone(), beside, upright))?;
-    let above = corner(frame.left, 4.0 * PT);
-    area.draw(&Text::new(heading.clone(), above, bold(9.0, &INK)))
-}
-
-fn visible(axis: &Axis) -> impl Iterator<Item = (f64, &str)> {
-    axis.ticks
-        .iter()
-        .filter(|(at, _)| (-1e-9..=1.0 + 1e-9).contains(&axis.place(*at)))
-        .map(|(at, label)| (*at, label.as_str()))
+    area.draw(&Text::new(y.name.clone(), beside, upright))
 }
 
 fn draw_item(item: &Item, frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
@@ -259,19 +267,27 @@ fn draw_item(item: &Item, frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
                 ))?;
             }
         }
-        Item::Shade { .. } => {}
-        Item::Arrow { ink, from, to } => draw_arrow(frame.at(*from), frame.at(*to), *ink, area)?,
-        Item::Text { ink, at, side, text } => {
+        Item::Key { ink, marker, at } if frame.is_near(*at) => {
+            draw_marker(frame.at(*at), *ink, *marker, area)?;
+        }
+        Item::Arrow { ink, from, to } if frame.is_near(*from) && frame.is_near(*to) => {
+            draw_arrow(frame.at(*from), frame.at(*to), *ink, area)?;
+        }
+        Item::Text { ink, at, side, text } if frame.is_near(*at) => {
             let gap = (4.0 * PT) as i32;
             let (x, y) = frame.at(*at);
             let (at, horizontal, vertical) = match side {
                 Side::Left => ((x - gap, y), HPos::Right, VPos::Center),
                 Side::Right => ((x + gap, y), HPos::Left, VPos::Center),
                 Side::Above => ((x, y - gap), HPos::Center, VPos::Bottom),
+                Side::UpperRight => ((x + gap, y - gap / 2), HPos::Left, VPos::Bottom),
+                Side::LowerRight => ((x + gap, y + gap / 2), HPos::Left, VPos::Top),
                 Side::Centre => ((x, y), HPos::Center, VPos::Center),
             };
             area.draw(&Text::new(text.clone(), at, font(8.0, &dark(*ink), horizontal, vertical)))?;
         }
+        // a shade lies under the axes; and what belongs far outside of them is not drawn
+        Item::Shade { .. } | Item::Key { .. } | Item::Arrow { .. } | Item::Text { .. } => {}
     }
     Ok(())
 }
@@ -373,6 +389,7 @@ fn finish(plot: &Plot, name: &str, svg: &str) -> String {
     let mut body = body
         .replace(" opacity=\"1\"", "")
         .replace(" \"/>", "\"/>")
+        .replace("font-family=\"sans-serif\"", FONTS)
         .replace("<text ", &format!("<text{EDGE} "));
     body = without_edges_on_colour(&body);
     for (opacity, pattern) in DASHES {
@@ -381,7 +398,8 @@ fn finish(plot: &Plot, name: &str, svg: &str) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"{view}\" \
          stroke-linejoin=\"round\" role=\"img\" aria-labelledby=\"{name}-title {name}-desc\">\n\
-         <title id=\"{name}-title\">{}</title>\n<desc id=\"{name}-desc\">{}</desc>{body}",
+         <title id=\"{name}-title\">{}</title>\n<desc id=\"{name}-desc\">{}</desc>\n\
+         <rect width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>{body}",
         escape(&plot.title),
         escape(&plot.description),
     )

@@ -11,12 +11,12 @@ use crate::paths::{Path, Paths};
 use crate::stream::Stream;
 
 /// What is shown, in metres.
-const LOW: [f64; 2] = [-2.35, -0.35];
-const HIGH: [f64; 2] = [2.35, 4.55];
-/// Points of print to a metre: the axes of a column figure are 207.5 points wide.
-const SCALE: f64 = 207.5 / (HIGH[0] - LOW[0]);
-/// The height at which a metre is as high as it is wide, with 50 points above and below the axes.
-const HEIGHT_MM: f64 = (SCALE * (HIGH[1] - LOW[1]) + 50.0) * 25.4 / 72.0;
+const LOW: [f64; 2] = [-2.25, -0.2];
+const HIGH: [f64; 2] = [2.25, 4.3];
+/// Points of print to a metre: 150 mm but for 2 points on both sides.
+const SCALE: f64 = (150.0 * 72.0 / 25.4 - 4.0) / (HIGH[0] - LOW[0]);
+/// The height at which a metre is as high as it is wide, with 22 points above and below.
+const HEIGHT_MM: f64 = (SCALE * (HIGH[1] - LOW[1]) + 22.0) * 25.4 / 72.0;
 
 /// One ink a path.
 const INKS: [(Ink, &str, &str); 3] =
@@ -26,7 +26,7 @@ const PRIMES: [&str; 2] = ["", "′"];
 /// Paths that are looked at, at most, for some that can be drawn.
 const TRIED: u64 = 100_000;
 /// Paths that can be made out, at most, from which those are chosen that can be told apart.
-const CANDIDATES: usize = 100;
+const CANDIDATES: usize = 300;
 
 /// 4.1 and 4.2: up to three paths of two or of three bounces, as they were sampled, from the side: the student's edition, which has room, cube, light, eye and p only, and the solution.
 ///
@@ -244,6 +244,15 @@ impl SideView {
             [p, next, ..] => Some(direction(p, next, 0.8)),
             _ => None,
         }));
+        // an arrow is on no line but its own, lest it seem another's
+        let legs = || {
+            let eye = [self.p(), self.eye()];
+            paths.iter().flat_map(|path| segments(&path.line)).chain([eye])
+        };
+        let arrows_apart = paths.iter().filter_map(|path| segments(&path.line).next()).all(|first| {
+            let arrow = [0.6, 0.8].map(|at| direction(first[0], first[1], at));
+            legs().filter(|leg| *leg != first).all(|leg| arrow.iter().all(|at| distance_to(leg, *at) > 0.1))
+        });
         let off_lines = |at: [f64; 2], least: f64| {
             paths
                 .iter()
@@ -256,22 +265,17 @@ impl SideView {
         apart(&vertices, 0.6)
             && apart(&ends, 0.2)
             && apart(&tips, 0.25)
+            && arrows_apart
             && vertices.iter().all(|at| off_lines(*at, 0.2))
             && off_lines(self.p(), 0.5)
             && vertex_normals.chain([self.to_eye()]).all(|tip| off_lines(tip, 0.12))
     }
 
-    /// The drawing without its axes' names, and how much its labels are in the way.
+    /// The drawing without its heading, and how much its labels are in the way.
     fn picture(&self, chosen: &[Drawn], edition: Edition) -> (Vec<Panel>, f64) {
-        let across = if self.from_east { "y (m)" } else { "x (m)" };
-        let metres = |name: &str, low: f64, high: f64, ticks: [(f64, &str); 5]| {
-            Axis::linear(name, low, high).with_ticks(ticks)
-        };
-        let mut panel = Panel::new(
-            "",
-            metres(across, LOW[0], HIGH[0], [(-2.0, "−2"), (-1.0, "−1"), (0.0, "0"), (1.0, "1"), (2.0, "2")]),
-            metres("z (m)", LOW[1], HIGH[1], [(0.0, "0"), (1.0, "1"), (2.0, "2"), (3.0, "3"), (4.0, "4")]),
-        );
+        let metres = |name: &str, axis: usize| Axis::linear(name, LOW[axis], HIGH[axis]);
+        let mut panel = Panel::new("", metres("across (m)", 0), metres("z (m)", 1));
+        panel.bare = true;
         let mut labels = Labels::new(LOW, HIGH, SCALE);
         self.draw_room(&mut panel, &mut labels);
         let (p, eye) = (self.p(), self.eye());
@@ -280,6 +284,8 @@ impl SideView {
                 labels.avoid(&path.line);
             }
             let to_eye = self.to_eye();
+            panel.line("to the eye", Ink::Black, [p, eye]);
+            labels.avoid(&[p, eye]);
             draw_arrow(Ink::Black, p, to_eye, &mut panel, &mut labels);
             self.draw_normal(&self.room.point(), &mut panel, &mut labels);
             for (path, (ink, number, digit)) in chosen.iter().zip(INKS) {
@@ -302,14 +308,15 @@ impl SideView {
         let (name, word) = if bounces == 2 { ("4_1_paths", "two") } else { ("4_2_paths", "three") };
         let (mut panels, _) = self.picture(chosen, edition);
         for panel in &mut panels {
-            panel.heading = format!("Paths of {word} bounces, from the side");
+            let from = if self.from_east { "the east, along x" } else { "the south, along y" };
+            panel.heading = format!("Paths of {word} bounces in the room, seen from the side: from {from}");
         }
         let number = ["No", "One", "Two", "Three"].get(chosen.len()).unwrap_or(&"Some");
         let paths = if chosen.len() == 1 { "path" } else { "paths" };
         let (title, description) = match edition {
             Edition::Student => (
                 format!("Draw paths of {word} bounces to p"),
-                "The room from the side, 4 m wide and high, with the cube of 1 m on its floor, the light in the ceiling, the point p and the eye.".into(),
+                "The room seen from the side, 4 m wide and high, with the cube of 1 m on its floor, the light in the ceiling, the point p and the eye.".into(),
             ),
             Edition::Solution if chosen.is_empty() => {
                 let why = if self.can_be_lit() {
@@ -317,12 +324,12 @@ impl SideView {
                 } else {
                     "No light leaves p after that many bounces: there is no light, or what the paths meet reflects none".into()
                 };
-                (format!("No sampled paths of {word} bounces"), format!("The room from the side. {why}. ωₒ leads from p to the eye, n is the normal."))
+                (format!("No sampled paths of {word} bounces"), format!("The room seen from the side. {why}. ωₒ leads from p to the eye, n is the normal."))
             }
             Edition::Solution => (
                 format!("{number} sampled {paths} of {word} bounces"),
                 format!(
-                    "The room from the side. Numbered paths, as they were sampled (seed {seed}), go from p in a direction ωᵢ to a point p₁, p₂, … on another face{} and on to the light, none through the cube; ωₒ leads from p to the eye. \
+                    "The room seen from the side. Numbered paths, as they were sampled (seed {seed}), go from p in a direction ωᵢ to a point p₁, p₂, … on another face{} and on to the light, none through the cube; ωₒ leads from p to the eye. \
                      Short arrows are normals n. What looks short may lead far in depth.",
                     if bounces > 2 { ", from there to p₁′, p₂′, …" } else { "" }
                 ),
@@ -333,7 +340,7 @@ impl SideView {
             title,
             description,
             edition,
-            width: Width::Column,
+            width: Width::Drawing,
             height_mm: HEIGHT_MM,
             columns: 1,
             panels,

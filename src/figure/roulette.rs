@@ -4,6 +4,7 @@ use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
 use super::{Edition, Figure};
 use crate::error::Result;
 use crate::estimator::Estimator;
+use crate::numbers::{equals, typeset};
 use crate::roulette::{LightModel, Roulette};
 use crate::run::{Budget, estimate};
 use crate::stream::Stream;
@@ -18,28 +19,39 @@ pub fn bounces(p_rr: [f64; 2], draws: usize, seed: u64) -> Result<Figure> {
         let roulette = Roulette::new(p)?;
         // up to the bounce that 99 of 100 rays do not reach
         let last = roulette.bounces().quantile(0.99)?.clamp(5, 60);
-        let tallest = (1.0 - p).max(0.05);
+        let mean = roulette.bounces().mean();
         let mut counts = vec![0u32; last as usize + 1];
-        let (mut rng, sampler) = (Stream::new(seed, 0), roulette.bounces().by_simulation()?);
-        for _ in 0..draws {
-            if let Some(count) = counts.get_mut(sampler.draw(&mut rng) as usize) {
+        let mut rng = Stream::new(seed, 0);
+        let mut count = |n: f64| {
+            if let Some(count) = counts.get_mut(n as usize) {
                 *count += 1;
             }
+        };
+        // long paths are not walked
+        if mean < 1000.0 {
+            let sampler = roulette.bounces().by_simulation()?;
+            (0..draws).for_each(|_| count(sampler.draw(&mut rng)));
+        } else {
+            let sampler = roulette.bounces().by_inversion()?;
+            (0..draws).for_each(|_| count(sampler.draw(&mut rng)));
         }
-        let n = draws as f64;
-        let measured = (0..=last).zip(counts).map(|(k, count)| {
-            let share = f64::from(count) / n;
-            let reach = 1.96 * (share * (1.0 - share) / n).sqrt();
-            [k as f64, share, share - reach, share + reach]
-        });
+        let n = draws.max(1) as f64;
+        let measured: Vec<_> = (0..=last)
+            .zip(counts)
+            .map(|(k, count)| {
+                let share = f64::from(count) / n;
+                let reach = 1.96 * (share * (1.0 - share) / n).sqrt();
+                [k as f64, share, share - reach, share + reach]
+            })
+            .collect();
+        let tallest = measured.iter().fold(1.0 - p, |tallest, [.., high]| tallest.max(*high / 1.1));
         let every = (last / 6).max(1) as usize;
         let ticks = (0..=last).step_by(every).map(|k| (k as f64, k.to_string()));
         let mut panel = Panel::new(
-            &format!("p_rr = {p}"),
+            &format!("p_rr = {}", typeset(p, 12)),
             Axis::linear("number of bounces k", -0.7, last as f64 + 0.7).with_ticks(ticks),
             Axis::linear("P(N = k)", 0.0, 1.15 * tallest),
         );
-        let mean = roulette.bounces().mean();
         panel
             .bars("exact", Ink::Blue, 0.8, (0..=last).map(|k| [k as f64, roulette.bounces().pmf(k)]))
             .error_bars("measured", Ink::Black, Marker::Disc, measured)
@@ -54,11 +66,11 @@ pub fn bounces(p_rr: [f64; 2], draws: usize, seed: u64) -> Result<Figure> {
                 Ink::Black,
                 [last as f64, 0.78 * tallest],
                 Side::Left,
-                &format!("E[N] = {}", (1e6 * mean).round() / 1e6),
+                &format!("E[N] {}", equals(mean, 6)),
             );
         panels.push(panel);
     }
-    let [a, b] = p_rr;
+    let [a, b] = p_rr.map(|p| typeset(p, 12));
     Plot {
         name: "5_1_bounces",
         title: format!("The number of bounces at p_rr = {a} and {b}"),
@@ -131,40 +143,63 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
     let cost = |q: f64| paths(q).map_or(f64::NAN, |paths| paths.cost());
     let product = |q: f64| variance(q) * cost(q);
     let low = (edge - 0.25).max(0.0);
+    // from where all three are finite to near 1, without the outermost parts, where they grow without bound
+    let values: Vec<f64> = (4..98)
+        .map(|percent| edge + 0.01 * f64::from(percent) * (1.0 - edge))
+        .flat_map(|q| [variance(q), cost(q), product(q)])
+        .filter(|value| value.is_finite() && *value > 0.0)
+        .collect();
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min).min(1.0);
+    let most = values.iter().copied().fold(4.0, f64::max);
+    // room below for what is said of the marks
+    let bottom = least * (least / most).powf(0.2);
+    let (albedo, v) = (typeset(albedo, 12), typeset(model.visibility(), 12));
     let mut panel = Panel::new(
-        &format!("ρ = {albedo}, v = {}", model.visibility()),
+        &format!("ρ = {albedo}, v = {v}"),
         Axis::linear("continuation probability q", low, 1.0),
-        Axis::log("value (dimensionless)", 0.5, 500.0),
+        Axis::log("value (dimensionless)", bottom, 2.0 * most),
     );
     panel.shade(low, edge);
+    // the names stand above and below their lines, on rows of their own
+    let row = |panel: &Panel, value: f64| panel.y.place(value).clamp(0.25, 0.95);
+    let mut rows = [row(&panel, 2.0 * cost(low + 0.1)), row(&panel, 0.55 * variance(0.93))];
+    if let [costs, varies] = &mut rows
+        && (*costs - *varies).abs() < 0.09
+    {
+        *varies = if *costs > 0.5 { *costs - 0.09 } else { *costs + 0.09 };
+    }
+    let [costs_at, varies_at] = rows.map(|row| panel.y.value(row));
+    let shaded = 0.5 * (edge - low) / (1.0 - low);
     panel
         .curve_between("variance", Ink::Blue, edge + 1e-6, 0.9995, variance)
         .curve_between("cost", Ink::Vermilion, low, 0.9995, cost)
         .curve_between("variance × cost", Ink::Green, edge + 1e-6, 0.9995, product)
-        .text(Ink::Black, [0.5 * (low + edge), 150.0], Side::Centre, "q ≤ ρ²:")
-        .text(Ink::Black, [0.5 * (low + edge), 80.0], Side::Centre, "infinite")
-        .text(Ink::Black, [0.5 * (low + edge), 43.0], Side::Centre, "variance")
-        .text(Ink::Vermilion, [low + 0.02, 2.0 * cost(low + 0.1)], Side::Right, "cost 1/(1 − q)")
-        .text(Ink::Blue, [0.93, 0.55 * variance(0.93)], Side::Left, "variance")
+        .note(Ink::Black, [shaded.max(0.12), 0.83], Side::Centre, "q ≤ ρ²:")
+        .note(Ink::Black, [shaded.max(0.12), 0.74], Side::Centre, "infinite")
+        .note(Ink::Black, [shaded.max(0.12), 0.65], Side::Centre, "variance")
+        .text(Ink::Vermilion, [low + 0.02, costs_at], Side::Right, "cost 1/(1 − q)")
+        .text(Ink::Blue, [0.98, varies_at], Side::Left, "variance")
         .text(Ink::Green, [edge + 0.06, 300.0], Side::Right, "variance × cost");
-    let mut marked = vec![(q, "● q", Marker::Disc, 1.08)];
+    let mut marked = vec![(q, "● q", Marker::Disc, 0.14)];
     if best > 0.0 && best < 1.0 {
-        marked.push((best, "○ q*", Marker::Ring, 0.66));
+        marked.push((best, "○ q*", Marker::Ring, 0.05));
     }
     for (at, word, marker, row) in marked {
         if product(at).is_finite() {
             panel.marks(word, Ink::Black, marker, [[at, product(at)]]);
-            let label = format!("{word} = {}: {:.2}", (1000.0 * at).round() / 1000.0, product(at));
-            panel.text(Ink::Black, [low + 0.005, row], Side::Right, &label);
+            let label = format!("{word} {}: {}", equals(at, 3), typeset(product(at), 3));
+            panel.note(Ink::Black, [0.0, row], Side::Right, &label);
         }
     }
     Plot {
         name: "5_3_roulette_trade",
-        title: format!("What roulette costs and buys: the product is least at q* = {best:.3}"),
+        title: format!("What roulette costs and buys: the product is least at q* {}", equals(best, 3)),
         description: format!(
-            "Variance, cost 1/(1 − q) and their product against q, logarithmic, for ρ = {albedo} and v = {}. The variance is infinite up to q = ρ² = {edge:.4}, shaded, and falls; the cost rises; the \
-             product is least at q* = {best:.4}. Marked: q = {q} and q*.",
-            model.visibility()
+            "Variance, cost 1/(1 − q) and their product against q, logarithmic, for ρ = {albedo} and v = {v}. The variance is infinite up to q = ρ² {}, shaded, and falls; the cost rises; the \
+             product is least at q* {}. Marked: q = {} and q*.",
+            equals(edge, 4),
+            equals(best, 4),
+            typeset(q, 12)
         ),
         edition: Edition::Solution,
         width: Width::Column,
@@ -183,33 +218,43 @@ pub fn truncation(model: &LightModel, q: f64, max_k: u64, replicates: u64, seed:
     let [short, long] = [max_k, max_k.saturating_mul(2)];
     let roulette = model.roulette(q)?;
     let root = |square: Result<f64>| square.map_or(f64::NAN, f64::sqrt);
+    // from two paths on
+    let first = 10f64.powf(((2.0 * roulette.cost()).log10() - 1e-9).ceil().max(1.0));
+    let last = 1e4 * first;
+    let errors = [root(roulette.mean_square_error(first)), root(roulette.mean_square_error(last))];
+    let biases = [model.truncated(short)?.bias().abs(), model.truncated(long)?.bias().abs()];
+    let sizes = || errors.into_iter().chain(biases).filter(|size| size.is_finite() && *size > 0.0);
+    let most = sizes().fold(0.0, f64::max);
+    let least = sizes().fold(f64::INFINITY, f64::min).max(1e-6 * most);
+    let (least, most) = if most > 0.0 { (least, most) } else { (0.1, 1.0) };
+    let [albedo, v, kept] = [model.albedo(), model.visibility(), q].map(|value| typeset(value, 12));
     let mut panel = Panel::new(
-        &format!("ρ = {}, v = {}, q = {q}", model.albedo(), model.visibility()),
-        Axis::log("vertices C", 10.0, 1e5),
-        Axis::log("RMSE (units of the light)", 0.01, 3.0).with_ticks([
-            (0.01, "0.01"),
-            (0.1, "0.1"),
-            (1.0, "1"),
-        ]),
+        &format!("ρ = {albedo}, v = {v}, q = {kept}"),
+        Axis::log("vertices C", first, last),
+        Axis::log("RMSE (units of the light)", 0.6 * least, 2.0 * most),
     );
     panel.curve("roulette", Ink::Blue, |c| root(roulette.mean_square_error(c)));
-    panel.text(Ink::Blue, [60.0, 1.7 * root(roulette.mean_square_error(60.0))], Side::Right, "roulette");
+    let early = 6.0 * first;
+    panel.text(Ink::Blue, [early, 1.7 * root(roulette.mean_square_error(early))], Side::Right, "roulette");
     for (max_k, ink) in [(short, Ink::Vermilion), (long, Ink::Green)] {
         let truncated = model.truncated(max_k)?;
         panel.curve(&format!("k ≤ {max_k}"), ink, |c| root(truncated.mean_square_error(c)));
         let plateau = truncated.bias().abs();
-        let (at, side) =
-            if max_k == short { ([9e4, 1.22 * plateau], Side::Left) } else { ([11.0, plateau], Side::Right) };
-        panel.text(ink, at, side, &format!("k ≤ {max_k}: bias {plateau:.3}"));
+        let (at, side) = if max_k == short {
+            ([0.9 * last, 1.22 * plateau], Side::Left)
+        } else {
+            ([1.1 * first, plateau], Side::Right)
+        };
+        panel.text(ink, at, side, &format!("k ≤ {max_k}: bias {}", typeset(plateau, 3)));
         let crossing = model.crossing(q, max_k)?;
-        if (10.0..1e5).contains(&crossing) {
+        if (first..last).contains(&crossing) {
             let at = [crossing, root(roulette.mean_square_error(crossing))];
             panel.marks("crossing", Ink::Black, Marker::Ring, [at]);
             panel.text(
                 Ink::Black,
                 [1.2 * crossing, 1.45 * at[1]],
                 Side::Right,
-                &format!("C = {crossing:.0}"),
+                &format!("C = {}", typeset(crossing, 4)),
             );
         }
     }
@@ -220,9 +265,12 @@ pub fn truncation(model: &LightModel, q: f64, max_k: u64, replicates: u64, seed:
         (Ink::Green, Marker::Triangle, Box::new(model.truncated(long)?), model.truncated(long)?.cost()),
     ] {
         let mut points = Vec::new();
-        for paths in
-            [4u64, 40, 400, 4000].map(|paths| (f64::from(paths as u32) * 5.0 / cost).round().max(1.0) as u64)
-        {
+        for vertices in [2.0, 20.0, 200.0, 2000.0].map(|part| part * first) {
+            // what would take long is left out
+            if vertices * replicates as f64 > 2e7 {
+                continue;
+            }
+            let paths = (vertices / cost).round().max(1.0) as u64;
             let mut square = 0.0;
             for replicate in 0..replicates {
                 let found = estimate(&estimator, Budget::Draws(paths), seed.wrapping_add(replicate))?;
@@ -236,10 +284,8 @@ pub fn truncation(model: &LightModel, q: f64, max_k: u64, replicates: u64, seed:
         name: "5_3_truncation",
         title: "Truncated paths stop improving; roulette overtakes them".into(),
         description: format!(
-            "Root mean square error against the number of vertices C, both logarithmic, for ρ = {}, v = {}. Roulette with q = {q} falls as 1/√C. Paths cut after k ≤ {short} and k ≤ {long} level off at \
-             their bias; the crossings are marked. Points: {replicates} runs each, seeds from {seed}.",
-            model.albedo(),
-            model.visibility()
+            "Root mean square error against the number of vertices C, both logarithmic, for ρ = {albedo}, v = {v}. Roulette with q = {kept} falls as 1/√C. Paths cut after k ≤ {short} and k ≤ {long} level off at \
+             their bias; the crossings are marked. Points: {replicates} runs each, seeds from {seed}."
         ),
         edition: Edition::Solution,
         width: Width::Column,

@@ -3,7 +3,7 @@
 use super::grammar;
 use super::{Options, Question};
 use crate::error::{Error, Result};
-use crate::numbers::in_a_text;
+use crate::numbers::typeset;
 
 /// A letter that stands for a number.
 #[derive(Debug, Clone, Copy)]
@@ -101,7 +101,7 @@ impl Question {
             .and_then(|(before, rest)| rest.split_once('»').map(|(formula, after)| (before, formula, after)))
         {
             filled += before;
-            filled += &in_a_text(self.value(formula, letters)?);
+            filled += &typeset(self.value(formula, letters)?, 7);
             rest = after;
         }
         Ok(filled + rest)

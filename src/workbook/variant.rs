@@ -157,7 +157,7 @@ pub(super) fn key(options: &Options) -> Result<Vec<[String; 4]>> {
             let truths = question.evaluate(number.formula, options)?;
             let truth = truths.first().copied().unwrap_or(f64::NAN);
             let id = format!("{}{}", question.id, number.part);
-            rows.push([id, number.asked(), number.formula.into(), crate::numbers::in_a_text(truth)]);
+            rows.push([id, number.asked(), number.formula.into(), crate::numbers::typeset(truth, 7)]);
         }
     }
     Ok(rows)
