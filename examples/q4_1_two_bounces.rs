@@ -1,7 +1,8 @@
 //! Question 4.1: paths of two bounces in the box room.
 //!
 //! They are drawn as a path tracer finds them: from p a random direction ω_i leads to p_j, and from there the
-//! light is looked for. The numbers say what such paths carry: the part of the light that reaches the eye after
+//! light is looked for. The numbers say what such paths carry: the part of the light that reaches the eye
+//! after
 //! exactly two bounces.
 
 use unbiased::box_room::BoxRoom;

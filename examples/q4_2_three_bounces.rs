@@ -1,6 +1,7 @@
 //! Question 4.2: paths of three bounces in the box room.
 //!
-//! One more vertex, p_j′, drawn from p_j around the normal there. No closed form is known for the light they carry;
+//! One more vertex, p_j′, drawn from p_j around the normal there. No closed form is known for the light they
+//! carry;
 //! two estimators that share nothing but the room agree on it.
 
 use unbiased::box_room::BoxRoom;

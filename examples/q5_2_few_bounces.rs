@@ -1,6 +1,7 @@
 //! Question 5.2: with p_rr = 1/5, what is E[N]?
 //!
-//! E[N] = p_rr/(1 − p_rr) = 1/4. Cheap; but light gathered along such paths has an infinite variance where p_rr ≤ ρ²:
+//! E[N] = p_rr/(1 − p_rr) = 1/4. Cheap; but light gathered along such paths has an infinite variance where
+//! p_rr ≤ ρ²:
 //! its estimate is unbiased and usually too dark.
 
 use unbiased::Result;

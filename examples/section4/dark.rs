@@ -4,7 +4,8 @@ use unbiased::box_room::BoxRoom;
 
 /// Whether every path brought 0 though some light comes to p, in a sentence.
 ///
-/// Without a truth, light after two bounces or more is meant: it comes to every point that reflects, unless the walls
+/// Without a truth, light after two bounces or more is meant: it comes to every point that reflects, unless
+/// the walls
 /// reflect none (the cube does not see itself).
 pub fn none_found(room: &BoxRoom, truth: Option<f64>) -> impl Fn(f64) -> Option<String> + use<> {
     let scene = room.scene();

@@ -66,7 +66,8 @@ pub(super) const TOO_FEW: &str = "too few draws to judge";
 const INFINITE: &str = "The mean is finite, the variance is not: this error bar means nothing.";
 
 impl Answer {
-    /// An answer to `question`, the sheet's number first ("2.1", "5.1(ii)"), about `what`, which does not tell it.
+    /// An answer to `question`, the sheet's number first ("2.1", "5.1(ii)"), about `what`, which does not
+    /// tell it.
     pub fn new(question: &str, what: &str) -> Self {
         Self {
             question: question.into(),
@@ -156,7 +157,8 @@ impl Answer {
             .parameter("efficiency", rival.efficiency())
     }
 
-    /// A sentence: the answer itself where the question has no number, or a word on this one. A second one follows it.
+    /// A sentence: the answer itself where the question has no number, or a word on this one. A second one
+    /// follows it.
     pub fn note(mut self, note: impl Into<String>) -> Self {
         let note = note.into();
         self.note = Some(self.note.map_or(note.clone(), |before| format!("{before} {note}")));
@@ -199,10 +201,14 @@ impl Answer {
         self.estimate?.z(self.truth?)
     }
 
-    /// Whether the estimate agrees with the truth, |z| ≤ 4, where there are both, the row is not a demonstration, and there are
-    /// draws enough to say so: 1000, or 100 000 where none of them differed and all are off. (A value that comes up in a draw with
-    /// probability p is missed by n draws with probability 1e-12 or less from p = 27.6/n on: here 3e-4.) Where they have less than
-    /// a hundredth of the truth, no number will do: all of it may be in values as rare as that, as with a light too small to hit.
+    /// Whether the estimate agrees with the truth, |z| ≤ 4, where there are both, the row is not a
+    /// demonstration, and there are
+    /// draws enough to say so: 1000, or 100 000 where none of them differed and all are off. (A value that
+    /// comes up in a draw with
+    /// probability p is missed by n draws with probability 1e-12 or less from p = 27.6/n on: here 3e-4.)
+    /// Where they have less than
+    /// a hundredth of the truth, no number will do: all of it may be in values as rare as that, as with a
+    /// light too small to hit.
     pub fn agrees(&self) -> Option<bool> {
         if self.kind == Kind::Demonstration || self.too_few_draws() {
             return None;

@@ -36,7 +36,8 @@ pub(super) enum Voice {
 /// Draws of a row that asks for no other number.
 const DRAWS: u64 = 1_000_000;
 
-/// Random numbers, or evaluations where they are more, that a row takes at most unless the command line asks for
+/// Random numbers, or evaluations where they are more, that a row takes at most unless the command line asks
+/// for
 /// draws: some ten seconds of them.
 const MOST_WORK: f64 = 1e9;
 
@@ -104,7 +105,8 @@ impl Sheet {
         Row { sheet: self, index: self.last(), draws: DRAWS, most_work: false }
     }
 
-    /// Adds a figure of the answer to the row before it. It is made where it is shown: not in the student's edition, and
+    /// Adds a figure of the answer to the row before it. It is made where it is shown: not in the student's
+    /// edition, and
     /// not by a shard.
     ///
     /// # Errors
@@ -139,7 +141,8 @@ impl Sheet {
         self.rows.borrow().len().saturating_sub(1)
     }
 
-    /// Prints the question, before all, and those of the first `done` rows that are not printed yet. Of shards it is not known
+    /// Prints the question, before all, and those of the first `done` rows that are not printed yet. Of
+    /// shards it is not known
     /// before the end whether they belong to these rows.
     fn tell(&self, done: usize) -> Result<()> {
         if self.told.get().is_none() {
@@ -235,7 +238,8 @@ impl Row<'_> {
         self
     }
 
-    /// A draw takes about so many random numbers: where these are too many, it is left out, and the row says so.
+    /// A draw takes about so many random numbers: where these are too many, it is left out, and the row says
+    /// so.
     pub fn takes(mut self, numbers: f64) -> Self {
         self.most_work = numbers > MOST_WORK_A_DRAW;
         if !self.most_work {
