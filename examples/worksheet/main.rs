@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use unbiased::workbook;
+use unbiased::workbook::{self, AnswerFn, Worksheet};
 
 #[path = "../extremes.rs"]
 mod extremes;
@@ -43,25 +43,33 @@ mod q5_3;
 mod trade;
 
 fn main() -> ExitCode {
-    workbook::worksheet(
-        &[
-            ("1.1", q1_1::answer),
-            ("1.2", q1_2::answer),
-            ("1.3", q1_3::answer),
-            ("2.1", q2_1::answer),
-            ("3.1", q3_1::answer),
-            ("3.2", q3_2::answer),
-            ("3.3", q3_3::answer),
-            ("3.4", q3_4::answer),
-            ("3.5", q3_5::answer),
-            ("3.6", q3_6::answer),
-            ("4.1", q4_1::answer),
-            ("4.2", q4_2::answer),
-            ("4.3", q4_3::answer),
-            ("5.1", q5_1::answer),
-            ("5.2", q5_2::answer),
-            ("5.3", q5_3::answer),
-        ],
-        &[("extremes", extremes::answer), ("trade", trade::answer)],
-    )
+    let answers: [(&str, AnswerFn); 16] = [
+        ("1.1", q1_1::answer),
+        ("1.2", q1_2::answer),
+        ("1.3", q1_3::answer),
+        ("2.1", q2_1::answer),
+        ("3.1", q3_1::answer),
+        ("3.2", q3_2::answer),
+        ("3.3", q3_3::answer),
+        ("3.4", q3_4::answer),
+        ("3.5", q3_5::answer),
+        ("3.6", q3_6::answer),
+        ("4.1", q4_1::answer),
+        ("4.2", q4_2::answer),
+        ("4.3", q4_3::answer),
+        ("5.1", q5_1::answer),
+        ("5.2", q5_2::answer),
+        ("5.3", q5_3::answer),
+    ];
+    let mut worksheet = Worksheet::new("Monte Carlo and global illumination");
+    for (id, answer) in answers {
+        match workbook::question(id) {
+            Ok(question) => worksheet = worksheet.question(question, answer),
+            Err(error) => {
+                eprintln!("{error}");
+                return ExitCode::FAILURE;
+            }
+        }
+    }
+    worksheet.beside("extremes", extremes::answer).beside("trade", trade::answer).run()
 }

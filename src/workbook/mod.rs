@@ -145,12 +145,21 @@ pub fn question(id: &str) -> Result<&'static Question> {
 /// What an example does: adds the rows that answer its question.
 pub type AnswerFn = fn(&Sheet) -> Result<()>;
 
-/// An example's `main`: reads the command line, answers the question, prints the answers and saves their figures.
+/// The `main` of the example of one of the workbook's questions: see [`main_of`].
 pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
-    ended(question(id).and_then(|question| {
+    match question(id) {
+        Ok(question) => main_of(question, answer),
+        Err(error) => ended(Err(error)),
+    }
+}
+
+/// The `main` of an example: reads the command line, answers the question, prints the answers and saves their figures.
+pub fn main_of(question: &'static Question, answer: AnswerFn) -> ExitCode {
+    let answered = || {
         let questions = [question];
         let asked = Asked::Questions(&questions);
         let Some(options) = Request::read(asked)?.options(asked)? else { return Ok(()) };
+        let options = options.for_question(question);
         // a parameter outside its domain is told before anything is run
         question.at(&options)?;
         let all = || {
@@ -162,7 +171,8 @@ pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
         };
         // a shard draws nothing
         if options.shard.is_some() { all() } else { options.with_out(all) }
-    }))
+    };
+    ended(answered())
 }
 
 /// What an example beside the questions does.
@@ -177,30 +187,107 @@ pub fn appendix(example: &str, appendix: AppendixFn) -> ExitCode {
     }))
 }
 
-/// The worksheet's `main`: answers all these questions, and writes `solution.html`, with the appendices as pages beside it, or
-/// `student.html`, or all of them.
+/// A worksheet: questions, of this crate or of one's own, each with the answer to it.
 ///
-/// Under `--seconds` an appendix has at most a tenth of a second for each of its many estimators.
-pub fn worksheet(answers: &[(&str, AnswerFn)], appendices: &[(&str, AppendixFn)]) -> ExitCode {
-    let asked = answers.iter().map(|(id, answer)| Ok((question(id)?, *answer))).collect::<Result<Vec<_>>>();
-    ended(asked.and_then(|asked| {
-        let questions: Vec<_> = asked.iter().map(|(question, _)| *question).collect();
+/// `examples/own_worksheet.rs` is one of another course.
+///
+/// ```no_run
+/// use unbiased::workbook::{Sheet, Worksheet, question};
+/// use unbiased::{Result, from_fn};
+///
+/// fn answer(sheet: &Sheet) -> Result<()> {
+///     let p = sheet.number("p-rr");
+///     let coin = from_fn(|rng| if rng.uniform() < p { 1.0 } else { 0.0 });
+///     sheet.row("P(N ≥ 1)").truth(p).estimate(&coin)?;
+///     Ok(())
+/// }
+///
+/// fn main() -> std::process::ExitCode {
+///     let worksheet = Worksheet::new("A first sheet");
+///     question("5.2").map(|question| worksheet.question_at(question, answer, &[("p-rr", "0.3")])).map_or(
+///         std::process::ExitCode::FAILURE,
+///         |worksheet| worksheet.run(),
+///     )
+/// }
+/// ```
+#[derive(Debug, Clone)]
+pub struct Worksheet {
+    title: String,
+    asked: Vec<(&'static Question, AnswerFn)>,
+    beside: Vec<(&'static str, AppendixFn)>,
+    /// Numbers in place of the questions' own.
+    given: Vec<(&'static Question, &'static str, &'static str)>,
+}
+
+impl Worksheet {
+    /// One without questions.
+    pub fn new(title: &str) -> Self {
+        Self { title: title.into(), asked: Vec::new(), beside: Vec::new(), given: Vec::new() }
+    }
+
+    /// Adds a question.
+    pub fn question(mut self, question: &'static Question, answer: AnswerFn) -> Self {
+        self.asked.push((question, answer));
+        self
+    }
+
+    /// Adds a question with other numbers than its own, by name.
+    pub fn question_at(
+        mut self,
+        question: &'static Question,
+        answer: AnswerFn,
+        numbers: &[(&'static str, &'static str)],
+    ) -> Self {
+        self.given.extend(numbers.iter().map(|(name, value)| (question, *name, *value)));
+        self.question(question, answer)
+    }
+
+    /// Adds an example beside the questions.
+    pub fn beside(mut self, example: &'static str, appendix: AppendixFn) -> Self {
+        self.beside.push((example, appendix));
+        self
+    }
+
+    /// The worksheet's `main`: reads the command line, answers all questions, and writes `solution.html`, with what stands
+    /// beside them as pages of their own, or `student.html`, or both.
+    ///
+    /// Under `--seconds` what stands beside has at most a tenth of a second for each of its many estimators.
+    pub fn run(self) -> ExitCode {
+        ended(self.pages())
+    }
+
+    fn pages(&self) -> Result<()> {
+        let questions: Vec<_> = self.asked.iter().map(|(question, _)| *question).collect();
+        for (index, question) in questions.iter().enumerate() {
+            if questions.iter().take(index).any(|before| before.id == question.id) {
+                return Err(Error::Usage(format!("question {} is on the worksheet twice", question.id)));
+            }
+        }
+        if questions.is_empty() {
+            return Err(Error::Usage(format!("the worksheet “{}” has no questions", self.title)));
+        }
         let all = Asked::Questions(&questions);
-        let Some(options) = Request::read(all)?.options(all)? else { return Ok(()) };
+        let Some(mut options) = Request::read(all)?.options(all)? else { return Ok(()) };
+        for (question, name, value) in &self.given {
+            let mut own = Options::default();
+            own.set(question, name, value)?;
+            options.put_below(own.for_alone(question));
+        }
+        options.title.clone_from(&self.title);
         for question in &questions {
             question.at(&options)?;
         }
         match &options.variants {
-            None => options.with_out(|| one_worksheet(&asked, appendices, &options)),
-            Some(file) => options.with_out(|| one_for_each(file, &asked, &options)),
+            None => options.with_out(|| one_worksheet(&self.asked, &self.beside, &options)),
+            Some(file) => options.with_out(|| one_for_each(file, &self.asked, &options)),
         }
-    }))
+    }
 }
 
 /// The pages, and the key with the appendices' pages.
 fn one_worksheet(
     asked: &[(&'static Question, AnswerFn)],
-    appendices: &[(&str, AppendixFn)],
+    appendices: &[(&'static str, AppendixFn)],
     options: &Options,
 ) -> Result<()> {
     let voice = if options.verbose { Voice::Full } else { Voice::Brief };

@@ -45,6 +45,8 @@ pub struct Options {
     pub(super) variants: Option<PathBuf>,
     /// Nothing is printed but where things are.
     pub(super) quiet: bool,
+    /// Of the worksheet.
+    pub(super) title: String,
     /// Of a question's figures the first alone is made: the one that a key has on paper.
     pub(super) one_figure: bool,
     /// The shards of which every run is put together instead.
@@ -67,6 +69,7 @@ impl Default for Options {
             shard: None,
             variants: None,
             quiet: false,
+            title: String::new(),
             one_figure: false,
             shards: None,
             given: Vec::new(),
@@ -309,6 +312,13 @@ impl Options {
     pub(super) fn put_below(&mut self, mut below: Self) {
         below.given.append(&mut self.given);
         self.given = below.given;
+    }
+
+    /// The same for this question alone.
+    pub(super) fn for_alone(self, question: &Question) -> Self {
+        let mut alone = Self::default();
+        alone.take_for(question, self);
+        alone
     }
 
     /// Takes what other options set, for this question alone.
