@@ -160,7 +160,7 @@ fn narrow(figure: &Figure) -> bool {
 fn aligned(table: &super::Table) -> Markup {
     html! {
         table.many[table.columns.len() > 6] {
-            caption { (table.caption) }
+            caption { (prose(&table.caption)) }
             thead { tr { @for name in &table.columns { th scope="col" { (name) } } } }
             tbody { @for row in &table.rows { tr {
                 @for (index, (cell, name)) in row.iter().zip(&table.columns).enumerate() {
