@@ -1,4 +1,5 @@
-//! The worksheet as pages, self-contained each: the sheet to be filled in, its answer key, and what stands beside them.
+//! The worksheet as pages, self-contained each: the sheet to be filled in, its answer key, and what stands
+//! beside them.
 
 mod key;
 mod sheet;
