@@ -169,8 +169,8 @@ pub fn appendix(example: &str, appendix: AppendixFn) -> ExitCode {
     }))
 }
 
-/// The worksheet's `main`: answers all these questions, and writes `solution.html`, with the appendices as pages beside it, or
-/// `student.html`, or all of them.
+/// The worksheet's `main`: answers all these questions, and writes `solution.html`, with the appendices as
+/// pages beside it, or `student.html`, or all of them.
 ///
 /// Under `--seconds` an appendix has at most a tenth of a second for each of its many estimators.
 pub fn worksheet(answers: &[(&str, AnswerFn)], appendices: &[(&str, AppendixFn)]) -> ExitCode {
@@ -219,8 +219,8 @@ pub fn worksheet(answers: &[(&str, AnswerFn)], appendices: &[(&str, AppendixFn)]
     }))
 }
 
-/// What the student's edition has of a question beside the solution: its figures, which are saved. Of its numbers it shows
-/// none, so that a few draws will do.
+/// What the student's edition has of a question beside the solution: its figures, which are saved. Of its
+/// numbers it shows none, so that a few draws will do.
 fn for_students(answer: AnswerFn, options: &Options) -> Result<Vec<Answer>> {
     let mut options = options.clone();
     options.edition = Edition::Student;

@@ -103,7 +103,7 @@ function said() {
   return document.body.innerText + figures.join(" ");
 }
 
-/** Neither the key's sentences nor the values of closed forms, where these have digits not written by chance. */
+/** Neither the key's sentences nor the values of closed forms, where these have digits enough. */
 async function tells_nothing(text, where) {
   const letters = (text) => text.replace(/[^\p{L}\p{N}]/gu, "");
   const lines = (await readFile(path.join(folder, "rows.json"), "utf8")).trim().split("\n");
