@@ -92,7 +92,10 @@ fn without_seconds(mut row: Value) -> Value {
 
 /// Whether a file may differ from run to run: it holds timings, as the page does, or is a PDF, whose library numbers its objects in the order of a hash map.
 fn changes(name: &str) -> bool {
-    name.ends_with(".pdf") || name == "index.html" || name.contains("seconds") || name.starts_with("trade_")
+    name.ends_with(".pdf")
+        || name.ends_with(".html")
+        || name.contains("seconds")
+        || name.starts_with("trade_")
 }
 
 #[test]
@@ -221,7 +224,7 @@ fn the_worksheet_is_the_same_bytes_every_time() {
 
 /// What a reader sees or hears of a page: its text without the tags, titles and descriptions included.
 fn text_of(html: &str) -> String {
-    let body = html.split_once("<body>").map_or(html, |(_, body)| body);
+    let body = html.split_once("<body").map_or(html, |(_, body)| body);
     let mut text = String::new();
     let mut inside = false;
     for c in body.chars() {
@@ -246,12 +249,12 @@ fn letters(text: &str) -> String {
 #[test]
 fn the_student_edition_contains_no_answer() {
     let (out, rows, printed) = student();
-    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    let page = fs::read_to_string(out.join("student.html")).unwrap();
     let mut texts = vec![("page", text_of(&page)), ("terminal", printed.clone())];
     for entry in fs::read_dir(out).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        assert!(name == "index.html" || name.contains("_student."), "{name}");
+        assert!(name == "student.html" || name.contains("_student."), "{name}");
         match path.extension().and_then(|ending| ending.to_str()) {
             Some("svg") => texts.push(("figure", text_of(&fs::read_to_string(&path).unwrap()))),
             Some("csv") => texts.push(("csv", fs::read_to_string(&path).unwrap())),
@@ -294,24 +297,66 @@ fn the_student_edition_contains_no_answer() {
 }
 
 #[test]
-fn the_page_has_everything_and_needs_nothing() {
+fn the_pages_have_everything_and_need_nothing() {
     let (out, rows) = worksheet();
-    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    let [key, trade, extremes] = ["solution", "trade", "extremes"]
+        .map(|name| fs::read_to_string(out.join(format!("{name}.html"))).unwrap());
     for question in unbiased::workbook::questions() {
-        assert!(page.contains(&format!("id=\"q{}\"", question.id)), "{}", question.id);
+        let id = question.id.replace('.', "-");
+        assert!(key.contains(&format!("id=\"q-{id}\"")), "{}", question.id);
+        let link = format!("href=\"#q-{id}\">{} ", question.id);
+        assert!(key.contains(&link), "the navigation does not name {}", question.id);
     }
-    for tag in ["<script", "<link", "<img", "<iframe", "@import", "url("] {
-        assert!(!page.contains(tag), "{tag}");
+    assert!(!out.join("student.html").exists() && !out.join("index.html").exists());
+    for name in ["trade", "extremes"] {
+        assert!(key.contains(&format!("href=\"{name}.html\"")), "{name}");
     }
     let files = fs::read_dir(out).unwrap().map(|entry| entry.unwrap().path());
     let drawn = files.filter(|path| path.extension().is_some_and(|ending| ending == "svg")).count();
     let named = rows.iter().flat_map(|row| row["figures"].as_array().unwrap());
     assert!(named.filter(|path| path.as_str().unwrap().ends_with(".svg")).count() <= drawn);
-    assert_eq!(page.matches("<svg").count(), drawn);
-    assert!(page.matches("<math").count() >= unbiased::workbook::questions().count());
-    // ids are unique, or titles and descriptions would be read out for the wrong figure
-    let ids: Vec<&str> = page.split(" id=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
-    assert_eq!(ids.iter().collect::<BTreeSet<_>>().len(), ids.len());
+    assert_eq!(
+        [&key, &trade, &extremes].map(|page| page.matches("<svg").count()).iter().sum::<usize>(),
+        drawn
+    );
+    assert!(key.matches("<math").count() >= unbiased::workbook::questions().count());
+    for page in [&key, &trade, &extremes] {
+        for tag in ["<script", "<link", "<img", "<iframe", "@import", "url(\"", "url(h"] {
+            assert!(!page.contains(tag), "{tag}");
+        }
+        // ids are unique, or titles and descriptions would be read out for the wrong figure, and names in XML
+        let ids: Vec<&str> = page.split(" id=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+        assert_eq!(ids.iter().collect::<BTreeSet<_>>().len(), ids.len());
+        assert!(ids.iter().all(|id| id.starts_with(|c: char| c.is_ascii_alphabetic())), "{ids:?}");
+        assert!(!page.contains("<th>") && !page.contains("nbsp"));
+        assert_eq!(page.matches("<table").count(), page.matches("<caption").count());
+    }
+    // what is not checked is said in words
+    let shown = rows.iter().filter(|row| row["kind"] == "demonstration" && row["estimate"].is_f64()).count();
+    assert_eq!(key.matches(">for show</td>").count(), shown);
+}
+
+#[test]
+fn both_editions_are_made_by_one_command_and_say_which_they_are() {
+    let out = folder("both");
+    for (edition, example) in [("Both", "worksheet"), ("BOTH", "q1_2_one_sample")] {
+        let output = run(example, &["--edition", edition, "--draws", "2000", "--out", out.to_str().unwrap()]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        for name in ["1_2_exponential.svg", "1_2_exponential_student.svg"] {
+            fs::remove_file(out.join(name)).unwrap();
+        }
+    }
+    for (name, kind) in [("student", "worksheet"), ("solution", "answer key")] {
+        let page = fs::read_to_string(out.join(format!("{name}.html"))).unwrap();
+        for tag in ["title", "h1"] {
+            let title = format!("<{tag}>Monte Carlo and global illumination — {kind}</{tag}>");
+            assert!(page.contains(&title), "{title}");
+        }
+    }
+    // the sheet is the one that is made alone
+    let (alone, _, _) = student();
+    let sheet = |folder: &Path| fs::read_to_string(folder.join("student.html")).unwrap();
+    assert!(sheet(alone) == sheet(&out));
 }
 
 #[test]
@@ -363,7 +408,12 @@ fn bad_input_gets_one_sentence_an_exit_code_and_leaves_nothing_behind() {
         ("q4_1_two_bounces", &["--point", "9,9,9"], 2, "the point (9, 9, 9)"),
         ("q1_3_axes", &["--threads", "0"], 2, "--threads takes a positive whole number"),
         ("q1_3_axes", &["--seed", "x"], 2, "--seed takes a whole number"),
-        ("q1_3_axes", &["--edition", "teacher"], 2, "--edition is student or solution, not \"teacher\""),
+        (
+            "q1_3_axes",
+            &["--edition", "teacher"],
+            2,
+            "--edition is student, solution or both, not \"teacher\"",
+        ),
         ("q1_3_axes", &["--u", "0.5"], 2, "there is no option --u"),
         ("q1_3_axes", &["solve"], 2, "unexpected argument"),
         ("q2_1_square", &["--x-low", "2"], 2, "must be"),

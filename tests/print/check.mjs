@@ -1,5 +1,6 @@
-// Looks at the worksheet's pages in a headless browser: `node check.mjs FOLDER BROWSER`, where FOLDER holds what
-// `worksheet --edition both --json` has written, its output as rows.json. Says all that is wrong; PDFs stay in the folder.
+// Looks at the worksheet's pages in a headless browser: `node check.mjs FOLDER BROWSER`, where FOLDER holds
+// what `worksheet --edition both --json` has written, its output as rows.json. Says all that is wrong; PDFs
+// stay in the folder.
 
 import { readFile, writeFile } from "node:fs/promises";
 import { createRequire } from "node:module";
@@ -25,7 +26,9 @@ for (const [name, most] of Object.entries(MOST_PAPER)) {
     await writeFile(path.join(folder, `${name}-${paper}.pdf`), pdf);
     const sheets = Buffer.from(pdf).toString("latin1").match(/\/Type\s*\/Page\b/g).length;
     console.log(`${name}.html on ${paper}: ${sheets} pages`);
-    if (most && sheets > most) faults.push(`${name}.html takes ${sheets} pages of ${paper}, more than ${most}`);
+    if (most && sheets > most) {
+      faults.push(`${name}.html takes ${sheets} pages of ${paper}, more than ${most}`);
+    }
     if (most) {
       await page.emulateMediaType("print");
       // what is left between the margins of 15 mm
@@ -44,7 +47,8 @@ for (const [name, most] of Object.entries(MOST_PAPER)) {
     await page.addScriptTag({ path: axe });
     const { violations } = await page.evaluate(() => window.axe.run());
     for (const { id, impact, nodes } of violations) {
-      const what = `${name}.html at ${width} px: axe finds ${id} (${impact}) ${nodes.length} times, first in ${nodes[0].html}`;
+      const where = `${name}.html at ${width} px`;
+      const what = `${where}: axe finds ${id} (${impact}) ${nodes.length} times, as in ${nodes[0].html}`;
       if (["serious", "critical"].includes(impact)) faults.push(what);
       else console.log(what);
     }
@@ -76,13 +80,16 @@ async function look(page, where) {
       const scrolls = (value) => ["auto", "scroll"].includes(value);
       if (element.localName !== "svg" && (scrolls(overflowX) || scrolls(overflowY))) say(element, "scrolls");
       const inline = getComputedStyle(element).display === "inline" || element.closest("math");
-      if (!inline && element.localName !== "svg" && element.scrollWidth > element.clientWidth + 1) say(element, `${element.scrollWidth - element.clientWidth} px too wide`);
+      const box = !inline && element.localName !== "svg";
+      const wider = element.scrollWidth - element.clientWidth;
+      const taller = element.scrollHeight - element.clientHeight;
+      if (box && wider > 1) say(element, `${wider} px too wide`);
       // a subscript may hang below the last line
-      if (!inline && element.localName !== "svg" && element.scrollHeight > element.clientHeight + 6) say(element, `${element.scrollHeight - element.clientHeight} px too tall`);
+      if (box && taller > 6) say(element, `${taller} px too tall`);
       if (["math", "svg"].includes(element.localName)) {
-        const box = element.closest(".formula, figure, article").getBoundingClientRect();
-        if (left < box.left - 1 || right > box.right + 1) say(element, "wider than its box");
-        if (top < box.top - 3 || bottom > box.bottom + 3) say(element, "taller than its box");
+        const outer = element.closest(".formula, figure, article").getBoundingClientRect();
+        if (left < outer.left - 1 || right > outer.right + 1) say(element, "wider than its box");
+        if (top < outer.top - 3 || bottom > outer.bottom + 3) say(element, "taller than its box");
       }
     }
     return found;
@@ -92,13 +99,15 @@ async function look(page, where) {
 
 /** All that a reader sees or hears of the page at hand. */
 function said() {
-  return document.body.innerText + [...document.querySelectorAll("svg")].map((svg) => svg.textContent).join(" ");
+  const figures = [...document.querySelectorAll("svg")].map((svg) => svg.textContent);
+  return document.body.innerText + figures.join(" ");
 }
 
-/** Neither the key's sentences nor the values of closed forms, where these have digits that nobody writes by chance. */
+/** Neither the key's sentences nor the values of closed forms, where these have digits enough. */
 async function tells_nothing(text, where) {
   const letters = (text) => text.replace(/[^\p{L}\p{N}]/gu, "");
-  const rows = (await readFile(path.join(folder, "rows.json"), "utf8")).trim().split("\n").map((row) => JSON.parse(row));
+  const lines = (await readFile(path.join(folder, "rows.json"), "utf8")).trim().split("\n");
+  const rows = lines.map((row) => JSON.parse(row));
   const truths = rows.map((row) => row.truth).filter((truth) => truth !== null);
   const values = truths.filter((truth) => Math.abs(truth * 1000 - Math.trunc(truth * 1000)) > 1e-9);
   const key = await browser.newPage();
@@ -106,7 +115,9 @@ async function tells_nothing(text, where) {
   const secrets = await key.evaluate(() =>
     [...document.querySelectorAll(".why, .original, .formula, dd")].map((element) => element.textContent));
   await key.close();
-  if (secrets.length < 50 || values.length < 10) faults.push(`${secrets.length} sentences and ${values.length} values are too few`);
+  if (secrets.length < 50 || values.length < 10) {
+    faults.push(`${secrets.length} sentences and ${values.length} values are too few`);
+  }
   for (const secret of new Set(secrets)) {
     const inside = letters(secret);
     if (inside.length > 7 && letters(text).includes(inside)) faults.push(`${where} says "${secret}"`);

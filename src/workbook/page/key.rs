@@ -1,4 +1,5 @@
-//! A question with its answer, as the key has it: on paper what settles it, on a screen all rows and figures, too.
+//! A question with its answer, as the key has it: on paper what settles it, on a screen all rows and
+//! figures, too.
 
 use maud::{Markup, html};
 
@@ -13,9 +14,12 @@ use crate::numbers::shortened;
 pub(super) fn legend(options: &Options) -> Markup {
     html! {
         div.legend {
-            p { strong { "✓" } " estimate and exact value agree: they differ by at most four standard errors. "
-                strong { "✗" } " they do not. " strong { "± " } "is a 95 % interval; z is the difference in standard errors." }
-            p { strong { "wrong on purpose" } " shows what a mistake does; with " strong { "infinite variance" }
+            p { strong { "✓" } " estimate and exact value agree: they differ by at most "
+                "four standard errors. "
+                strong { "✗" } " they do not. "
+                strong { "± " } "is a 95 % interval; z is the difference in standard errors." }
+            p { strong { "wrong on purpose" } " shows what a mistake does; with "
+                strong { "infinite variance" }
                 " an error bar means nothing. Neither is checked, and neither gets a mark." }
             p { "All random numbers come from seed " (options.seed) "." }
         }
@@ -55,7 +59,9 @@ pub(super) fn article(question: &'static Question, answers: &[Answer], options: 
                 summary { (all_of_it(rows.len(), others.len())) }
                 @if !rows.is_empty() { (table(question, &rows, &options)) }
                 @for answer in &rows {
-                    @if let Some(sentence) = print::cut_short(answer) { p { (answer.what()) ": " (sentence) } }
+                    @if let Some(sentence) = print::cut_short(answer) {
+                        p { (answer.what()) ": " (sentence) }
+                    }
                     @if let Some(sentence) = answer.sentence() { p { (prose(sentence)) } }
                 }
                 div.figures { @for figure in others { (shown(figure)) } }
@@ -137,7 +143,9 @@ fn table(question: &Question, rows: &[&Answer], options: &Options) -> Markup {
                     @if row.estimate().is_some() { (print::interval(row)) }
                     @else if let Some(value) = row.found() { (shortened(value)) }
                 }
-                td.number data-name="z" { @if !row.too_few_draws() { @if let Some(z) = row.z() { (of_z(z)) } } }
+                td.number data-name="z" {
+                    @if let Some(z) = row.z().filter(|_| !row.too_few_draws()) { (of_z(z)) }
+                }
                 td.number data-name="draws" {
                     @if let Some(estimate) = row.estimate() { (grouped(estimate.draws())) }
                 }

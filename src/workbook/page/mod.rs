@@ -1,4 +1,5 @@
-//! The worksheet as pages, self-contained each: the sheet to be filled in, its answer key, and what stands beside them.
+//! The worksheet as pages, self-contained each: the sheet to be filled in, its answer key, and what stands
+//! beside them.
 
 mod key;
 mod sheet;
@@ -14,17 +15,16 @@ use text::prose;
 /// The questions with their answers, in order.
 type Answered = [(&'static Question, Vec<Answer>)];
 
-const TITLE: &str = "Monte Carlo and global illumination";
 const STYLE: &str = include_str!("style.css");
 
 /// `student.html`: the questions, and room for answers by hand.
 pub(super) fn sheet(answered: &Answered, options: &Options) -> Result<String> {
     Ok(whole(
         "sheet",
-        &format!("{TITLE} — worksheet"),
+        &format!("{} — worksheet", options.title),
         &html! {
             header {
-                h1 { (TITLE) " — worksheet" }
+                h1 { (options.title) " — worksheet" }
                 p.fill { span { "Name" } span { "Date" } }
             }
             (questions(answered, options)?)
@@ -37,10 +37,10 @@ pub(super) fn sheet(answered: &Answered, options: &Options) -> Result<String> {
 pub(super) fn key(answered: &Answered, appendices: &[Appendix], options: &Options) -> Result<String> {
     Ok(whole(
         "key",
-        &format!("{TITLE} — answer key"),
+        &format!("{} — answer key", options.title),
         &html! {
             header {
-                h1 { (TITLE) " — answer key" }
+                h1 { (options.title) " — answer key" }
                 (key::legend(options))
             }
             (questions(answered, options)?)
@@ -53,7 +53,7 @@ pub(super) fn key(answered: &Answered, appendices: &[Appendix], options: &Option
                 }
             }
             main { (by_section(answered, |question, answers| key::article(question, answers, options))?) }
-            footer { p { "Made by " code { "cargo run --release --example worksheet" } ", crate unbiased "
+            footer { p { "Made with the crate unbiased "
                 (env!("CARGO_PKG_VERSION")) "." } }
         },
     ))
@@ -140,7 +140,7 @@ fn heading(section: &str) -> String {
         "5" => "Russian roulette",
         _ => "",
     };
-    format!("{section} {name}")
+    format!("{section} {name}").trim().to_owned()
 }
 
 /// A figure with its title, its ids made names of their own on the page.
@@ -163,7 +163,7 @@ fn narrow(figure: &Figure) -> bool {
 fn aligned(table: &super::Table) -> Markup {
     html! {
         table.many[table.columns.len() > 6] {
-            caption { (table.caption) }
+            caption { (prose(&table.caption)) }
             thead { tr { @for name in &table.columns { th scope="col" { (name) } } } }
             tbody { @for row in &table.rows { tr {
                 @for (index, (cell, name)) in row.iter().zip(&table.columns).enumerate() {

@@ -34,7 +34,8 @@ fn shifts(c: char) -> bool {
     c.is_alphabetic() || c.is_ascii_digit()
 }
 
-/// Whether a `_` after this stands in a name of a program's, such as `ln_1p`: a letter with a subscript stands alone.
+/// Whether a `_` after this stands in a name of a program's, such as `ln_1p`: a letter with a subscript
+/// stands alone.
 fn ends_in_a_name(before: &str) -> bool {
     let reversed = || before.chars().rev();
     let letters = reversed().take_while(char::is_ascii_alphabetic).count();
