@@ -156,7 +156,7 @@ impl Axis {
             (low / step - 1e-9).ceil() as i64..=(high / step + 1e-9).floor() as i64
         } else {
             // what cannot be drawn is said of the whole figure
-            1..=0
+            std::ops::RangeInclusive::new(1, 0)
         };
         let ticks = steps.map(|i| (i as f64 * step, in_steps(i as f64 * step / unit, step / unit))).collect();
         let name = if power == 0.0 { name.into() } else { in_units(name, &power_of_ten(power as i32)) };
