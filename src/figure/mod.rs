@@ -230,7 +230,7 @@ mod tests {
     fn writers_of_one_file_do_not_disturb_each_other() {
         let folder = std::env::temp_dir().join(format!("unbiased-writers-{}", std::process::id()));
         let figure = integrand().unwrap();
-        let write = || (0..50).map(|_| figure.save(&folder).map(|_| ())).collect::<Result<()>>();
+        let write = || (0..50).try_for_each(|_| figure.save(&folder).map(|_| ()));
         std::thread::scope(|scope| {
             let writers: Vec<_> = (0..8).map(|_| scope.spawn(write)).collect();
             assert!(writers.into_iter().all(|writer| writer.join().unwrap().is_ok()));
