@@ -163,8 +163,8 @@ mod tests {
             "name   second",
             "one    2",
             "three  20",
-            "three: a long",
-            "remark of its own",
+            "three: a long remark",
+            "of its own",
         ];
         assert_eq!(stacked(&table, 19), narrow);
     }
