@@ -206,7 +206,7 @@ fn by_chance() -> Attempt<'static> {
 #[test]
 fn a_right_estimator_is_never_diagnosed() {
     for (what, attempt) in right() {
-        for round in 0..8 {
+        for round in 0..4 {
             let diagnosis = diagnosed(&attempt, DRAWS, 1000 + round);
             assert_eq!(diagnosis.finding(), Finding::NothingWrong, "{what}: {diagnosis}");
             assert_eq!(diagnosis.candidates().count(), 0);
