@@ -227,11 +227,11 @@ fn few_draws_of_a_right_estimator_are_never_called_wrong() {
         let is_slow = std::ptr::eq(attempt.exercise(), LightOfPaths::exercise());
         for draws in [2, 3, 5, 10, 20, 30, 31, 40, 60, 100, 200, 500, 1000] {
             let rounds = if common::mutation() {
-                4
+                2
             } else if is_slow {
-                20
+                8
             } else {
-                50
+                16
             };
             for round in 0..rounds {
                 let measured = check::measure(attempt, draws, 70_000 + round).unwrap();
