@@ -283,7 +283,9 @@ impl Exercise {
         let own = self.about.questions.iter().find(|(asked, _)| *asked == question);
         let own = own.map_or(0, |(_, own)| *own);
         let mut probes: Vec<_> = self.probes.iter().collect();
-        probes[..(own + 1).min(self.probes.len())].rotate_right(1);
+        if let Some(first) = probes.get_mut(..=own) {
+            first.rotate_right(1);
+        }
         probes
     }
 
