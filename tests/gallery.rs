@@ -251,6 +251,31 @@ fn few_draws_of_a_right_estimator_are_never_called_wrong() {
     assert!(runs > 10_000 || common::mutation());
 }
 
+/// What a right estimator may show once in a thousand or a million times, by hand: one hit where ten were due, one
+/// miss where ten were due, and thirty draws whose spread came out small.
+#[test]
+fn rare_luck_is_not_called_wrong() {
+    let finding = |question: &str, draws: &[(u32, f64)]| {
+        let mut tally = check::Tally::default();
+        draws.iter().for_each(|(count, draw)| (0..*count).for_each(|_| tally.push(*draw)));
+        let probe = exercise(question).unwrap().probes_of(question)[0];
+        check::diagnose(&[tally.on(probe)]).unwrap().finding()
+    };
+    let is_wrong = |found: Finding| matches!(found, Finding::Known | Finding::Unknown);
+    // paths that find the light bring 4, one in a hundred does: t = −9 of one hit, yet likely enough
+    assert!(!is_wrong(finding("4.3", &[(999, 0.0), (1, 4.0)])));
+    // none of that helps where there are draws enough
+    assert!(is_wrong(finding("4.3", &[(99_900, 0.0), (100, 4.0)])));
+    // t = 9 of one miss in a thousand, with mean 1 and ten due
+    assert!(!is_wrong(finding("5", &[(999, 1.0 / 0.99), (1, 0.0)])));
+    // thirty draws, 8 std errors off: Student's law with 29 degrees of freedom is not normal
+    let off = |deviations: f64| {
+        let step = 29f64.sqrt() / deviations;
+        finding("5", &[(15, 1.0 + 1e-2 + step * 1e-2), (15, 1.0 + 1e-2 - step * 1e-2)])
+    };
+    assert!(!is_wrong(off(8.0)) && is_wrong(off(20.0)));
+}
+
 // ---- the gallery ------------------------------------------------------------------------------------------------
 
 #[test]
