@@ -30,10 +30,10 @@ use unbiased::workbook;
 // Each of these problems is in `unbiased::…::mistakes` of its topic.
 
 use rand::distr::Distribution;
-use unbiased::box_room::nearest_hit;
-use unbiased::hemisphere::Hemisphere;
+use unbiased::lambertian::hemisphere::Hemisphere;
 use unbiased::lambertian::mistakes::Reflection;
 use unbiased::paths::mistakes::LightOfPaths;
+use unbiased::paths::room::nearest_hit;
 
 /// The question that your estimator answers.
 const QUESTION: &str = "3.5";
@@ -49,7 +49,7 @@ fn mine() -> Attempt<'static> {
 ///
 /// This one finds the light by chance. A point of the room, a vertex of the path, has a `position()` and a `normal()`, and the room knows
 /// what `emitted(&vertex)` and `albedo(&vertex)` are there; for a light sample there are `light_corners()`, `light_area()` and
-/// `unbiased::box_room::visible(&vertex, point)`.
+/// `unbiased::paths::room::visible(&vertex, point)`.
 fn paths() -> Attempt<'static> {
     Attempt::new(|p: &LightOfPaths, rng| {
         let (room, bounces) = (&p.room, p.bounces());

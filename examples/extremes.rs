@@ -5,12 +5,12 @@
 use std::process::ExitCode;
 
 use glam::DVec3;
-use unbiased::box_room::form_factor;
-use unbiased::hemisphere::Hemisphere;
 use unbiased::inversion::Exponential;
+use unbiased::lambertian::hemisphere::Hemisphere;
+use unbiased::paths::room::form_factor;
 use unbiased::roulette::{LightModel, Roulette};
-use unbiased::workbook::{self, Answer, Appendix, Options, Table};
-use unbiased::{Estimate, Result, figure};
+use unbiased::workbook::{self, Answer, Appendix, Options, Table, extremes};
+use unbiased::{Estimate, Result};
 
 /// One formula at one input.
 struct Extreme {
@@ -43,13 +43,13 @@ pub fn answer(options: &Options) -> Result<Appendix> {
         text: "Each formula is right on paper and fails in floating point somewhere: a difference of nearly equal numbers keeps none of their digits, a square overflows, a sum swallows what is added. \
                An error is counted in ulps, units of the last place of the truth, which was computed with another program."
             .into(),
-        tables: vec![Table {
-            caption: "The obvious code, what it gives, and what the crate gives".into(),
-            columns: vec!["as written", "at", "gives", "off by (ulps)", "the crate", "off by (ulps)"],
+        tables: vec![Table::new(
+            "The obvious code, what it gives, and what the crate gives",
+            ["as written", "at", "gives", "off by (ulps)", "the crate", "off by (ulps)"],
             rows,
-        }],
+        )],
         records,
-        figures: vec![figure::errors_in_ulps()?, figure::running_mean_errors(options.seed)?],
+        figures: vec![extremes::errors_in_ulps()?, extremes::running_mean_errors(options.seed)?],
     })
 }
 

@@ -11,7 +11,7 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 use std::process::ExitCode;
 
-use unbiased::hemisphere::Hemisphere;
+use unbiased::lambertian::hemisphere::Hemisphere;
 use unbiased::workbook::{self, Letter, Number, Parameter, Question, Sheet, Slip, Value, Worksheet};
 use unbiased::{Error, Result, f_over_p, from_uniforms};
 

@@ -4,17 +4,18 @@
 //! cdf numerically; both must have mean 1/λ.
 
 use rand::distr::Distribution;
+use unbiased::inversion::figures;
 use unbiased::inversion::{Exponential, Inversion};
 use unbiased::workbook::{self, Sheet};
-use unbiased::{Result, figure, from_fn};
+use unbiased::{Result, from_fn};
 
 /// The rate 0.37 beside the sheet's, since at λ = 1 dividing and multiplying by λ look alike.
 pub fn answer(sheet: &Sheet) -> Result<()> {
     let asked = Exponential::new(sheet.number("rate"))?;
     let seed = sheet.seed();
     sheet.row("the samples' distribution");
-    sheet.figure(|| figure::empirical_cdf(&asked, 200, seed))?;
-    sheet.figure(|| figure::tails(&asked, 1 << 20, seed))?;
+    sheet.figure(|| figures::empirical_cdf(&asked, 200, seed))?;
+    sheet.figure(|| figures::tails(&asked, 1 << 20, seed))?;
 
     for exponential in [asked, Exponential::new(0.37)?] {
         let (rate, mean) = (exponential.rate(), exponential.mean());

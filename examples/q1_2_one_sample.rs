@@ -2,9 +2,10 @@
 //!
 //! x = −ln(1 − 0.75) = ln 4, by the formula and by inverting the cdf numerically.
 
+use unbiased::Result;
+use unbiased::inversion::figures;
 use unbiased::inversion::{Exponential, Inversion};
 use unbiased::workbook::{self, Sheet};
-use unbiased::{Result, figure};
 
 /// The sample, and the density there.
 pub fn answer(sheet: &Sheet) -> Result<()> {
@@ -14,7 +15,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     let any_cdf = Inversion::new(|x| exponential.cdf(x), [0.0, f64::INFINITY])?;
 
     sheet.row("the sample x").truth(x).value(any_cdf.inverse_cdf(u)?);
-    sheet.drawing(|edition| figure::exponential(&exponential, u, edition))?;
+    sheet.drawing(|edition| figures::exponential(&exponential, u, edition))?;
     sheet.row("the density there").truth(rate * (1.0 - u)).value(exponential.pdf(x));
     Ok(())
 }

@@ -3,9 +3,10 @@
 //! In n independent pairs: ⟨Fₙ⟩ = 16/n Σ f(Xᵢ, Yᵢ), since p(x, y) = p(x) p(y) = 1/16. Below for six functions
 //! whose integrals are known, then with the same evaluations better placed, then with the classic mistakes.
 
+use unbiased::rectangle::figures;
 use unbiased::rectangle::{Integrand, Rectangle};
 use unbiased::workbook::{self, Row, Sheet};
-use unbiased::{Result, f_over_p, figure, from_fn};
+use unbiased::{Result, f_over_p, from_fn};
 
 /// The six functions, the better placed points, the mistakes.
 pub fn answer(sheet: &Sheet) -> Result<()> {
@@ -20,8 +21,8 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
 
     let seed = sheet.seed();
     sheet.row("how the error falls");
-    sheet.figure(|| figure::sampling_errors(rectangle, seed))?;
-    sheet.figure(|| figure::running_means(rectangle, seed))?;
+    sheet.figure(|| figures::sampling_errors(rectangle, seed))?;
+    sheet.figure(|| figures::running_means(rectangle, seed))?;
     for f in Integrand::ALL {
         let estimator = from_fn(|rng| {
             let (x, y) = (a + width * rng.uniform(), c + height * rng.uniform());

@@ -5,8 +5,8 @@
 //! dark is dark.
 
 use unbiased::Result;
-use unbiased::hemisphere::Hemisphere;
 use unbiased::lambertian::Lambertian;
+use unbiased::lambertian::hemisphere::Hemisphere;
 use unbiased::workbook::{self, Sheet};
 
 /// Nothing is emitted, and nothing is reflected in the dark.

@@ -5,10 +5,11 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use unbiased::hemisphere::Hemisphere;
 use unbiased::lambertian::Lambertian;
+use unbiased::lambertian::figures;
+use unbiased::lambertian::hemisphere::Hemisphere;
 use unbiased::workbook::{self, Sheet};
-use unbiased::{Result, f_over_p, figure, from_fn};
+use unbiased::{Result, f_over_p, from_fn};
 
 /// Over directions, over angles, and with a factor forgotten.
 pub fn answer(sheet: &Sheet) -> Result<()> {
@@ -27,7 +28,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
 
     let row = |what| sheet.row(what).truth(cube.reflected(radiance));
     row("reflected radiance, integrated over directions").estimate(&over_directions)?;
-    sheet.figure(figure::integrand)?;
+    sheet.figure(figures::integrand)?;
     row("reflected radiance, integrated over θ and φ").estimate(&over_angles)?;
     row("sin θ forgotten").wrong_on_purpose("dω = sin θ dθ dφ").estimate(&without_sine)?;
     row("cos θ forgotten").wrong_on_purpose("f/p has a factor cos θ").estimate(&without_cosine)?;

@@ -5,8 +5,8 @@
 //! could know ω_o, does not.
 
 use unbiased::Result;
-use unbiased::hemisphere::Hemisphere;
 use unbiased::lambertian::Lambertian;
+use unbiased::lambertian::hemisphere::Hemisphere;
 use unbiased::workbook::{self, Sheet};
 
 /// The albedo asked for, and half of it.

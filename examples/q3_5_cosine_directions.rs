@@ -4,12 +4,12 @@
 //! density, too.
 
 use rand::distr::Distribution;
-use unbiased::hemisphere::{Direction, Hemisphere};
-use unbiased::lambertian::mistakes::Reflection;
+use unbiased::lambertian::figures;
+use unbiased::lambertian::hemisphere::{Direction, Hemisphere};
 use unbiased::lambertian::{CosinePower, Lambertian, Light};
 use unbiased::placement::sobol;
 use unbiased::workbook::{self, Sheet};
-use unbiased::{Result, f_over_p, figure, from_fn};
+use unbiased::{Result, f_over_p, from_fn};
 
 /// The general form, the simplified one, better placed numbers, the mistakes.
 pub fn answer(sheet: &Sheet) -> Result<()> {
@@ -30,9 +30,8 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     let infinite = sky.variance(cube, Hemisphere::Cosine).is_infinite();
     let row = |what| sheet.row(what).truth(truth).infinite_variance_if(infinite);
     row("reflected radiance, general form").estimate(&general)?;
-    sheet.figure(|| figure::directions(Hemisphere::Cosine, 600, seed))?;
-    sheet.figure(|| figure::wealth(seed))?;
-    sheet.figure(figure::mistakes::<Reflection>)?;
+    sheet.figure(|| figures::directions(Hemisphere::Cosine, 600, seed))?;
+    sheet.figure(|| figures::betting(seed))?;
     row("reflected radiance, simplified").estimate(&simplified)?;
     row("reflected radiance, sets of 256 Sobol points").draws(4000).estimate(&sobol(&general, 256)?)?;
     row("the formula changed, the directions still uniform")

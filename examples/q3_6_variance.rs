@@ -4,10 +4,11 @@
 //! variance of a draw is smaller, and it is 0 where the two are proportional. It is also larger under some
 //! lights. The variance is itself a mean, of (X − L_r)², and is estimated as one.
 
-use unbiased::hemisphere::Hemisphere::{self, Cosine, Uniform};
+use unbiased::lambertian::figures;
+use unbiased::lambertian::hemisphere::Hemisphere::{self, Cosine, Uniform};
 use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
 use unbiased::workbook::{self, Row, Sheet};
-use unbiased::{Estimator, Result, figure, from_fn};
+use unbiased::{Estimator, Result, from_fn};
 
 /// Both variances under cos^a θ, and under a ring of light at the horizon.
 pub fn answer(sheet: &Sheet) -> Result<()> {
@@ -17,8 +18,8 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
 
     let seed = sheet.seed();
     sheet.row("variance against the light");
-    sheet.figure(|| figure::variance_against_exponent(100_000, seed))?;
-    sheet.figure(|| figure::variance_against_ring(400_000, seed))?;
+    sheet.figure(|| figures::variance_against_exponent(100_000, seed))?;
+    sheet.figure(|| figures::variance_against_ring(400_000, seed))?;
     for sky in skies {
         // the error bar of a variance takes E[X⁴], finite for a > −5/4 and a > −1/2
         for (what, density, least) in

@@ -5,11 +5,12 @@
 //! after
 //! exactly two bounces.
 
-use unbiased::box_room::BoxRoom;
-use unbiased::hemisphere::Hemisphere;
+use unbiased::Result;
+use unbiased::lambertian::hemisphere::Hemisphere;
+use unbiased::paths::figures;
+use unbiased::paths::room::BoxRoom;
 use unbiased::paths::{Bounces, FindLight, Paths};
 use unbiased::workbook::{self, Sheet};
-use unbiased::{Result, figure};
 
 /// Three paths to draw, and the light of all of them.
 pub fn answer(sheet: &Sheet) -> Result<()> {
@@ -17,7 +18,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     let paths = Paths::new(room, Bounces::Exactly(2), Hemisphere::Cosine, FindLight::BySampling)?;
     let seed = sheet.seed();
     sheet.row("the paths drawn");
-    sheet.drawing(|_| figure::paths_drawn(&paths, 3, seed))?;
+    sheet.drawing(|_| figures::paths_drawn(&paths, 3, seed))?;
     sheet.row("light that such paths carry").truth(room.two_bounces()).estimate(&paths)?;
     Ok(())
 }

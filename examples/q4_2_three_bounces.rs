@@ -4,11 +4,12 @@
 //! carry;
 //! two estimators that share nothing but the room agree on it.
 
-use unbiased::box_room::BoxRoom;
-use unbiased::hemisphere::Hemisphere::{Cosine, Uniform};
+use unbiased::Result;
+use unbiased::lambertian::hemisphere::Hemisphere::{Cosine, Uniform};
+use unbiased::paths::figures;
+use unbiased::paths::room::BoxRoom;
 use unbiased::paths::{Bounces, FindLight, Paths};
 use unbiased::workbook::{self, Sheet};
-use unbiased::{Result, figure};
 
 #[path = "section4/dark.rs"]
 #[allow(clippy::duplicate_mod)] // the worksheet takes it in with each of its examples
@@ -21,7 +22,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     let by_chance = Paths::new(room, Bounces::Exactly(3), Uniform, FindLight::ByChance)?;
     let seed = sheet.seed();
     sheet.row("the paths drawn");
-    sheet.drawing(|_| figure::paths_drawn(&sampled, 3, seed))?;
+    sheet.drawing(|_| figures::paths_drawn(&sampled, 3, seed))?;
     for (what, paths) in [
         ("light that such paths carry, light sampled, cosine directions", sampled),
         ("light that such paths carry, light by chance, uniform directions", by_chance),

@@ -6,13 +6,13 @@
 //! and
 //! if that estimate goes on in the same way, more bounces. The truths of one and two bounces are exact.
 
-use unbiased::box_room::BoxRoom;
-use unbiased::hemisphere::Hemisphere::{Cosine, Uniform};
-use unbiased::paths::mistakes::LightOfPaths;
+use unbiased::lambertian::hemisphere::Hemisphere::{Cosine, Uniform};
+use unbiased::paths::figures;
+use unbiased::paths::room::BoxRoom;
 use unbiased::paths::{Bounces, FindLight, Paths, reflected};
 use unbiased::placement::sobol;
 use unbiased::workbook::{self, Sheet};
-use unbiased::{Estimator, Result, figure};
+use unbiased::{Estimator, Result};
 
 #[path = "section4/dark.rs"]
 #[allow(clippy::duplicate_mod)] // the worksheet takes it in with each of its examples
@@ -24,11 +24,10 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     let exact = [Some(room.one_bounce()), room.two_bounces()]; // after one bounce, and after two
     let (bounces, seed) = (sheet.limit("bounces"), sheet.seed());
     sheet.row("paths in the room");
-    sheet.figure(|| figure::two_bounces_converging(&room, seed))?;
-    sheet.figure(|| figure::occluded_fraction(200_000, seed))?;
-    sheet.figure(|| figure::radiance_by_bounces(&room, seed))?;
-    sheet.figure(figure::mistakes::<LightOfPaths>)?;
-    sheet.figure(|| figure::path_errors(&room, seed))?;
+    sheet.figure(|| figures::two_bounces_converging(&room, seed))?;
+    sheet.figure(|| figures::occluded_fraction(200_000, seed))?;
+    sheet.figure(|| figures::radiance_by_bounces(&room, seed))?;
+    sheet.figure(|| figures::path_errors(&room, seed))?;
 
     let add = |what: &str, estimator: &dyn Estimator, truth: Option<f64>, caution: Option<String>| {
         // a set of points is one draw

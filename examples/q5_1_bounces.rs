@@ -5,8 +5,9 @@
 //! step by inversion. And the coin keeps every mean: E[X_rr] = E[X].
 
 use unbiased::roulette::Roulette;
+use unbiased::roulette::figures;
 use unbiased::workbook::{self, Sheet};
-use unbiased::{Estimator, Result, figure, from_fn};
+use unbiased::{Estimator, Result, from_fn};
 
 /// Each part coin by coin and in one step, then the mean that the coin keeps.
 pub fn answer(sheet: &Sheet) -> Result<()> {
@@ -36,7 +37,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     // which draws coin by coin, thousands of times
     if coins <= 1e5 {
         let seed = sheet.seed();
-        sheet.figure(|| figure::bounces([p_rr, 0.2], 2000, seed))?;
+        sheet.figure(|| figures::bounces([p_rr, 0.2], 2000, seed))?;
     }
     row("in one step").estimate(&in_one_step)?;
 

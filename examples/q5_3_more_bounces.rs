@@ -6,9 +6,10 @@
 //! p_rr.
 
 use unbiased::placement::sobol;
+use unbiased::roulette::figures;
 use unbiased::roulette::{LightModel, Roulette};
 use unbiased::workbook::{self, Sheet};
-use unbiased::{Estimator, Result, figure};
+use unbiased::{Estimator, Result};
 
 /// The number of bounces at five p_rr, then the light of paths ended by roulette or cut off.
 pub fn answer(sheet: &Sheet) -> Result<()> {
@@ -19,9 +20,9 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
 
     let seed = sheet.seed();
     sheet.row("bounces, variance and cost");
-    sheet.figure(|| figure::mean_bounces(100_000, seed))?;
-    sheet.figure(|| figure::roulette_trade(&model, p_rr))?;
-    sheet.figure(|| figure::truncation(&model, p_rr, max_k, 200, seed))?;
+    sheet.figure(|| figures::mean_bounces(100_000, seed))?;
+    sheet.figure(|| figures::roulette_trade(&model, p_rr))?;
+    sheet.figure(|| figures::truncation(&model, p_rr, max_k, 200, seed))?;
     for p_rr in [0.2, 0.5, 0.8, 0.9, 0.99] {
         let law = Roulette::new(p_rr)?.bounces();
         sheet.row("E[N]").parameter("p_rr", p_rr).truth(law.mean()).estimate(&law.by_inversion()?)?;

@@ -6,15 +6,16 @@
 use std::fs;
 use std::process::ExitCode;
 
-use unbiased::box_room::{BoxRoom, Scene};
-use unbiased::figure;
-use unbiased::hemisphere::Hemisphere::{Cosine, Uniform};
 use unbiased::inversion::Exponential;
+use unbiased::lambertian::hemisphere::Hemisphere::{Cosine, Uniform};
 use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
+use unbiased::paths::room::{BoxRoom, Scene};
 use unbiased::paths::{Bounces, FindLight, Paths, reflected};
 use unbiased::placement::{jittered, sobol};
+use unbiased::plot::Figure;
 use unbiased::rectangle::{Family, Genz, Integrand, Rectangle};
 use unbiased::roulette::LightModel;
+use unbiased::trade::figures;
 use unbiased::trade::{Comparison, Measured, Nature, Place, Rival, Trade};
 use unbiased::workbook::{self, Answer, Appendix, Options, Table, Value};
 use unbiased::{Budget, Error, Estimator, Result, from_fn};
@@ -65,12 +66,16 @@ pub fn answer(options: &Options) -> Result<Appendix> {
         ),
     ];
     let figures = vec![
-        figure::trade(
+        figures::comparison(
             "trade_light",
             "Light found by chance or sampled: draws, rays and seconds",
             &ways.found,
         )?,
-        figure::trade("trade_endings", "Roulette falls on where truncation levels off", &endings.found)?,
+        figures::comparison(
+            "trade_endings",
+            "Roulette falls on where truncation levels off",
+            &endings.found,
+        )?,
         placed_figure("trade_placed_2", "Up to 2 bounces, independent and placed", &placements, TWO)?,
         placed_figure("trade_placed_15", "Up to 15 bounces, independent and placed", &placements, FIFTEEN)?,
     ];
@@ -306,24 +311,16 @@ const FIFTEEN: &str = "k ≤ 15";
 const UP_TO_3: [f64; 2] = [0.335_016_21, 2.4e-7];
 const UP_TO_15: [f64; 2] = [0.355_326_94, 9.1e-7];
 
-fn placed_figure(
-    name: &'static str,
-    title: &str,
-    placements: &[Compared],
-    what: &str,
-) -> Result<figure::Figure> {
+fn placed_figure(name: &'static str, title: &str, placements: &[Compared], what: &str) -> Result<Figure> {
     let mine = placements.iter().find(|compared| compared.what.starts_with(&format!("{what},")));
     let mine = mine.ok_or_else(|| Error::Usage(format!("there is no comparison of {what}")))?;
-    figure::trade(name, title, &mine.found)
+    figures::comparison(name, title, &mine.found)
 }
 
 fn table<'a>(caption: &str, comparisons: impl IntoIterator<Item = &'a Compared>) -> Table {
     let comparisons: Vec<&Comparison> = comparisons.into_iter().map(|compared| &compared.found).collect();
-    Table {
-        caption: caption.into(),
-        columns: comparisons.first().map_or(Vec::new(), |first| first.columns()),
-        rows: comparisons.into_iter().flat_map(Comparison::rows).collect(),
-    }
+    let columns = comparisons.first().map_or(Vec::new(), |first| first.columns());
+    Table::new(caption, columns, comparisons.into_iter().flat_map(Comparison::rows))
 }
 
 /// One line an integrand: how fast the error of each way falls with n, and which one reaches 0.1 % first.
@@ -346,11 +343,11 @@ fn points_table(points: &[Compared]) -> Table {
         cells.push(if infinite { "infinite variance: no error bar holds".into() } else { best.join(" or ") });
         cells
     });
-    Table {
-        caption: "2.1: where the points stand; error slopes in n (independent points: −½), and seconds to 0.1 %, at least those of one draw, which is a whole replicate: the most efficient \
-            (those not told apart from it, too) need not be the first there, as its replicates may be better than asked for"
-            .into(),
-        columns: vec![
+    Table::new(
+        "2.1: where the points stand; error slopes in n (independent points: −½), and seconds to 0.1 %, at least \
+         those of one draw, which is a whole replicate: the most efficient (those not told apart from it, too) \
+         need not be the first there, as its replicates may be better than asked for",
+        [
             "integrand",
             "slope, jittered",
             "slope, Sobol",
@@ -360,8 +357,8 @@ fn points_table(points: &[Compared]) -> Table {
             "Sobol, 4096",
             "most efficient",
         ],
-        rows: rows.collect(),
-    }
+        rows,
+    )
 }
 
 /// All comparisons below each other.

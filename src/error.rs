@@ -1,6 +1,6 @@
 //! What can go wrong, said in one sentence each.
 
-use crate::numbers::rounded;
+use crate::numbers::{parseable, rounded};
 
 /// Why a question could not be answered.
 ///
@@ -15,7 +15,7 @@ use crate::numbers::rounded;
 #[non_exhaustive]
 pub enum Error {
     /// A parameter lies outside its domain.
-    #[error("{name} must be {allowed}, not {value}")]
+    #[error("{name} must be {allowed}, not {}", parseable(*.value))]
     Parameter {
         /// The parameter, as the worksheet calls it.
         name: &'static str,
@@ -35,7 +35,7 @@ pub enum Error {
         allowed: &'static str,
     },
     /// A point of the box room lies where it must not.
-    #[error("the point ({x}, {y}, {z}) {reason}")]
+    #[error("the point ({}, {}, {}) {reason}", parseable(*.x), parseable(*.y), parseable(*.z))]
     Point {
         /// Its x coordinate in metres.
         x: f64,
@@ -77,7 +77,7 @@ pub enum Error {
         reason: String,
     },
     /// A draw left the range that was claimed for it.
-    #[error("draw {draw} of block {block} is {value} (seed {seed}), outside the range [{}, {}] claimed for it", .range[0], .range[1])]
+    #[error("draw {draw} of block {block} is {} (seed {seed}), outside the range [{}, {}] claimed for it", parseable(*.value), parseable(.range[0]), parseable(.range[1]))]
     OutOfRange {
         /// The check's seed.
         seed: u64,

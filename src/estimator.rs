@@ -220,7 +220,7 @@ impl<const N: usize, D: Density<N> + ?Sized> Density<N> for &D {
 /// together; the draw is then NaN or infinite, which ends a run with an error.
 ///
 /// ```
-/// use unbiased::{Budget, estimate, f_over_p, hemisphere::Hemisphere};
+/// use unbiased::{Budget, estimate, f_over_p, lambertian::hemisphere::Hemisphere};
 ///
 /// // ∫ cos θ dω over the hemisphere is π; a density in proportion to cos θ has no variance at all
 /// let estimate = estimate(&f_over_p(|w| w.cos_theta(), Hemisphere::Cosine), Budget::Draws(100), 1)?;

@@ -162,6 +162,14 @@ impl Div for Extended {
     }
 }
 
+/// What a cdf may be off by: sums of weights end an ulp or two from 1, and library cdfs are good to 1e-14 only.
+pub const ROUNDING: f64 = 1.0 / (1u64 << 40) as f64;
+
+/// Whether it is in [0, 1] but for rounding. NaN is not.
+pub fn is_probability(computed: f64) -> bool {
+    (-ROUNDING..=1.0 + ROUNDING).contains(&computed)
+}
+
 #[cfg(test)]
 mod tests {
     use super::Extended;

@@ -9,7 +9,7 @@
 //! [run](estimate()) of it, and an [`Estimate`] with its error.
 //!
 //! ```
-//! use unbiased::{Budget, estimate, hemisphere::Hemisphere, lambertian::Lambertian};
+//! use unbiased::{Budget, estimate, lambertian::{Lambertian, lambertian::hemisphere::Hemisphere}};
 //!
 //! // radiance reflected by a surface of albedo 0.8 under a sky of radiance cos θ: 2ρ/3
 //! let cube = Lambertian::new(0.8)?;
@@ -31,8 +31,8 @@
 //! |---|---|---|
 //! | 1 The inversion method | [`inversion`] | the exponential distribution, and the inversion of any one-dimensional cdf |
 //! | 2 Unbiased estimators | [`rectangle`] | independent pairs, all n² pairs, jittered and Sobol points on any rectangle |
-//! | 3 The diffuse cube | [`hemisphere`], [`lambertian`] | uniform and cosine directions, a Lambertian surface, lights with exact variances |
-//! | 4 Paths | [`box_room`], [`paths`] | the one scene, its closed forms, and paths of k, up to K, or all bounces through it |
+//! | 3 The diffuse cube | [`lambertian`] | uniform and cosine directions, a Lambertian surface, lights with exact variances |
+//! | 4 Paths | [`paths`], [`paths::room`] | the one scene, its closed forms, and paths of k, up to K, or all bounces through it |
 //! | 5 Russian roulette | [`roulette`] | bounce counts, the wrapper X_rr, and what roulette costs and buys |
 //!
 //! Whether an estimator is unbiased, and which classic mistake it looks like if not, is what [`check`] says; `examples/check_mine.rs` is the place to try one's own.
@@ -40,7 +40,7 @@
 //! What a second of each buys is what [`trade`] measures.
 //!
 //! Underneath lie [`estimator`], [`placement`], [`run`], [`estimate`](mod@estimate), [`stream`] and [`error`]; above, with the feature `workbook` (on by default),
-//! `figure` and `workbook`. The files in `examples/` are the answers to read, one a question.
+//! `plot` and `workbook`. The files in `examples/` are the answers to read, one a question.
 //!
 //! # Conventions
 //!
@@ -54,16 +54,12 @@
 //! - `notebook` (default): figures, estimates and verdicts show as pictures and HTML in Jupyter.
 //! - `png`, `pdf`: figures in those formats, too.
 
-pub mod box_room;
 pub mod check;
 pub mod error;
 pub mod estimate;
 pub mod estimator;
 pub mod fast;
-#[cfg(feature = "workbook")]
-pub mod figure;
 mod float;
-pub mod hemisphere;
 pub mod inversion;
 pub mod lambertian;
 #[cfg(feature = "notebook")]
@@ -71,6 +67,8 @@ pub mod notebook;
 mod numbers;
 pub mod paths;
 pub mod placement;
+#[cfg(feature = "workbook")]
+pub mod plot;
 mod quantile;
 pub mod rectangle;
 pub mod roulette;

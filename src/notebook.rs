@@ -12,8 +12,8 @@ pub use rand::distr::Distribution;
 use crate::check::{self, Agreement, Attempt, Diagnosis, Exact, Exercise, Finding, Report, Verdict};
 use crate::error::{Error, Result};
 use crate::estimate::Estimate;
-use crate::figure::Figure;
-use crate::numbers::{duration, plus_minus, shortened, two_digits};
+use crate::numbers::{duration, plus_minus, shortened, std_errors, two_digits};
+use crate::plot::Figure;
 use crate::run::{Budget, Outcome, Run};
 use crate::trade::Comparison;
 use crate::workbook::{Judgement, Table, told_once};
@@ -206,12 +206,8 @@ impl Show for Comparison {
         });
         let [to_3, to_4] =
             if relative { ["to 0.1 %", "to 0.01 %"] } else { ["to 10⁻³ (absolute)", "to 10⁻⁴"] };
-        Table {
-            caption: "What a second buys, on one core of the machine that ran this".into(),
-            columns: vec!["estimator", "a draw", "error after 1 s", to_3, to_4, "efficiency", "remark"],
-            rows: rows.collect(),
-        }
-        .show()
+        let columns = ["estimator", "a draw", "error after 1 s", to_3, to_4, "efficiency", "remark"];
+        Table::new("What a second buys, on one core of the machine that ran this", columns, rows).show()
     }
 }
 
@@ -230,13 +226,7 @@ pub fn against(truth: f64, estimates: &[(&str, Estimate)]) -> Table {
     let rows = estimates.iter().map(|(name, estimate)| {
         let ratio =
             if truth == 0.0 { String::new() } else { minus(format!("{:.3}", estimate.mean() / truth)) };
-        let z = match estimate.z(truth) {
-            // a sum with 0 makes 0 of −0
-            Some(z) if z.abs() < 1e3 => minus(format!("{:.1}", (10.0 * z).round() / 10.0 + 0.0)),
-            Some(z) if z.is_infinite() => "no variance".into(),
-            Some(z) => minus(format!("{z:.0}")),
-            None => String::new(),
-        };
+        let z = estimate.z(truth).map_or_else(String::new, std_errors);
         vec![
             (*name).into(),
             minus(
@@ -249,11 +239,8 @@ pub fn against(truth: f64, estimates: &[(&str, Estimate)]) -> Table {
             estimate.draws().to_string(),
         ]
     });
-    Table {
-        caption: minus(format!("The truth is {}", shortened(truth))),
-        columns: vec!["", "mean ± 95 %", "over the truth", "std errors off", "draws"],
-        rows: rows.collect(),
-    }
+    let caption = minus(format!("The truth is {}", shortened(truth)));
+    Table::new(&caption, ["", "mean ± 95 %", "over the truth", "std errors off", "draws"], rows)
 }
 
 /// One's own estimator, checked.
@@ -371,14 +358,14 @@ fn said(good: Option<bool>, sentence: &str) -> Markup {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hemisphere::Hemisphere;
+    use crate::lambertian::hemisphere::Hemisphere;
     use crate::lambertian::mistakes::Reflection;
     use crate::roulette::mistakes::Bounces;
     use crate::stream::Stream;
 
     #[test]
     fn every_kind_has_plain_text_and_something_better() {
-        let figure = crate::figure::integrand().unwrap();
+        let figure = crate::lambertian::figures::integrand().unwrap();
         let (kind, picture) = figure.show().rich().map(|(kind, content)| (kind, content.to_owned())).unwrap();
         assert_eq!((kind, picture.as_str()), ("image/svg+xml", figure.svg()));
         assert_eq!(figure.show().plain(), figure.title());

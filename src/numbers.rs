@@ -14,7 +14,9 @@ pub(crate) fn plus_minus(mean: f64, reach: f64) -> String {
         let zero = mean.strip_prefix('-').filter(|digits| digits.chars().all(|c| c == '0' || c == '.'));
         format!("{} ± {reach:.places$}", zero.unwrap_or(&mean))
     } else {
-        format!("{mean:e} ± {reach:.1e}")
+        // as far as the mean reaches above the error's last digit
+        let digits = (mean.abs().log10().floor() - reach.log10().floor() + 1.0).clamp(0.0, 16.0);
+        format!("{mean:.*e} ± {reach:.1e}", digits as usize)
     }
 }
 
@@ -41,6 +43,17 @@ pub(crate) fn rounded(value: f64, digits: usize) -> String {
     }
     let rounded = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
     format!("{rounded:e}")
+}
+
+/// A number of standard errors, to two places as long as they mean something; `∞`.
+#[cfg(feature = "workbook")]
+pub(crate) fn std_errors(z: f64) -> String {
+    let (sign, size) = (if z < 0.0 { "−" } else { "" }, z.abs());
+    match size {
+        f64::INFINITY => format!("{sign}∞"),
+        100.0.. => format!("{sign}{size:.0}"),
+        _ => format!("{sign}{size:.2}"),
+    }
 }
 
 /// Two significant digits, or all of a whole number below 10⁵; `∞`.
@@ -126,7 +139,6 @@ pub(crate) fn duration(seconds: f64) -> String {
 
 /// All digits of a number, in the shorter form where the plain one is long: either is read back as the same
 /// number.
-#[cfg(feature = "workbook")]
 pub(crate) fn parseable(number: f64) -> String {
     let (plain, scientific) = (number.to_string(), format!("{number:e}"));
     if plain.len() <= 12 || plain.len() <= scientific.len() { plain } else { scientific }
@@ -143,7 +155,9 @@ mod tests {
             (12345.6, 78.0, "12346 ± 78"),
             (-0.0001, 0.01, "0.000 ± 0.010"),
             (2.0, 0.0, "2 ± 0"),
-            (1.5e-20, 2.5e-22, "1.5e-20 ± 2.5e-22"),
+            (1.5e-20, 2.5e-22, "1.500e-20 ± 2.5e-22"),
+            (8.003_581_620_508_651e299, 9.0e296, "8.0036e299 ± 9.0e296"),
+            (0.0, 2e-20, "0e0 ± 2.0e-20"),
             (1.0, f64::INFINITY, "1 ± ∞"),
         ] {
             assert_eq!(plus_minus(mean, reach), text);
@@ -165,6 +179,7 @@ mod tests {
         ] {
             assert_eq!(typeset(value, digits), text);
         }
+        assert_eq!([-3.999, 1034.4, f64::NEG_INFINITY].map(std_errors), ["−4.00", "1034", "−∞"]);
         assert_eq!([equals(0.25, 3), equals(1.386_29, 3)], ["= 0.25", "≈ 1.39"]);
         assert_eq!([in_steps(-0.5, 0.5), in_steps(20.0, 20.0)], ["−0.5", "20"]);
         assert_eq!([power_of_ten(-18), power_of_ten(0)], ["10⁻¹⁸", "1"]);

@@ -11,8 +11,8 @@ use glam::DVec3;
 use proptest::prelude::*;
 use rand::distr::Distribution;
 use rayon::prelude::*;
-use unbiased::box_room::{BoxRoom, Face, Scene, Vertex, form_factor, nearest_hit, visible};
-use unbiased::hemisphere::{Direction, Hemisphere};
+use unbiased::lambertian::hemisphere::{Direction, Hemisphere};
+use unbiased::paths::room::{BoxRoom, Face, Scene, Vertex, form_factor, nearest_hit, visible};
 use unbiased::{Stream, from_fn};
 
 // ---- points and rays by plainer means ------------------------------------------------------------------------------

@@ -5,9 +5,9 @@ mod common;
 use proptest::prelude::*;
 use rand::distr::Distribution;
 use unbiased::check::{self, CELLS, Exact, Unbiased, Verdict, distributed_as, exactly};
-use unbiased::hemisphere::{Direction, Hemisphere};
 use unbiased::inversion::Exponential;
 use unbiased::lambertian::Lambertian;
+use unbiased::lambertian::hemisphere::{Direction, Hemisphere};
 use unbiased::rectangle::Rectangle;
 use unbiased::roulette::Roulette;
 use unbiased::{Error, Estimator, Stream, f_over_p, from_fn};
@@ -261,7 +261,7 @@ fn bad_input_is_an_error() {
     }
     for bad in [0.0, -1.0, f64::NAN, 2.0, 1e-9] {
         assert!(
-            check::directions(&Hemisphere::Cosine, Hemisphere::Cosine, bad, 1e-12, 1).is_err(),
+            common::directions(&Hemisphere::Cosine, Hemisphere::Cosine, bad, 1e-12, 1).is_err(),
             "D = {bad}"
         );
     }
@@ -731,10 +731,10 @@ impl Distribution<Direction> for Wrong {
 fn directions_of_another_density_are_refused() {
     use Hemisphere::{Cosine, Uniform};
     let agrees = |sampler: Wrong, claimed| {
-        check::directions(&sampler, claimed, 0.02, 1e-12, common::seed(120)).unwrap().agrees
+        common::directions(&sampler, claimed, 0.02, 1e-12, common::seed(120)).unwrap().agrees
     };
     for hemisphere in [Uniform, Cosine] {
-        assert!(check::directions(&hemisphere, hemisphere, 0.01, 1e-12, common::seed(121)).unwrap().agrees);
+        assert!(common::directions(&hemisphere, hemisphere, 0.01, 1e-12, common::seed(121)).unwrap().agrees);
     }
     assert!(agrees(Wrong(|rng| Uniform.sample(rng)), Uniform));
     assert!(!agrees(Wrong(|rng| Uniform.sample(rng)), Cosine));
@@ -750,7 +750,7 @@ fn directions_of_another_density_are_refused() {
         let u = rng.uniform();
         Direction::polar((1.0 - u).sqrt(), std::f64::consts::TAU * u).unwrap()
     });
-    let found = check::directions(&tied, Cosine, 0.02, 1e-12, common::seed(122)).unwrap();
+    let found = common::directions(&tied, Cosine, 0.02, 1e-12, common::seed(122)).unwrap();
     assert!(!found.agrees && matches!(found.place, check::Place::Cell(..)), "{found}");
     // for one draw in two, so that no cell is empty: those on the diagonal have 4.5 times their share
     let half_tied = Wrong(|rng| {
@@ -758,7 +758,7 @@ fn directions_of_another_density_are_refused() {
         let turn = if rng.uniform() < 0.5 { u } else { v };
         Direction::polar((1.0 - u).sqrt(), std::f64::consts::TAU * turn).unwrap()
     });
-    let found = check::directions(&half_tied, Cosine, 0.02, 1e-12, common::seed(123)).unwrap();
+    let found = common::directions(&half_tied, Cosine, 0.02, 1e-12, common::seed(123)).unwrap();
     assert!(
         !found.agrees && matches!(found.place, check::Place::Cell(row, column) if row == CELLS - 1 - column),
         "{found}"
@@ -775,7 +775,7 @@ fn right_samplers_are_refused_no_more_often_than_claimed() {
         refused[0] +=
             i32::from(!distributed_as(&exponential, |x| exponential.cdf(x), 0.1, 0.3, seed).unwrap().agrees);
         refused[1] += i32::from(
-            !check::directions(&Hemisphere::Cosine, Hemisphere::Cosine, 0.1, 0.3, seed).unwrap().agrees,
+            !common::directions(&Hemisphere::Cosine, Hemisphere::Cosine, 0.1, 0.3, seed).unwrap().agrees,
         );
     }
     println!("refused at α = 0.3: {refused:?} of 300");
@@ -789,7 +789,7 @@ fn reports_are_sentences() {
     assert!(report.to_string().starts_with("unbiased within 4.1e-3: 0.40"), "{report}");
     let report = check_of(3, 1e-2).run(&right(3, -0.5).0).unwrap();
     assert!(report.to_string().contains("times the truth"), "{report}");
-    let agreement = check::directions(&Hemisphere::Uniform, Hemisphere::Cosine, 0.1, 1e-6, 1).unwrap();
+    let agreement = common::directions(&Hemisphere::Uniform, Hemisphere::Cosine, 0.1, 1e-6, 1).unwrap();
     assert!(agreement.to_string().starts_with("distributed not as claimed"), "{agreement}");
     assert!(agreement.to_string().contains("not seen:"));
 }

@@ -2,10 +2,10 @@
 
 mod common;
 
-use unbiased::box_room::{BoxRoom, Scene};
-use unbiased::hemisphere::{Direction, Hemisphere};
 use unbiased::inversion::{Exponential, Inversion};
 use unbiased::lambertian::Lambertian;
+use unbiased::lambertian::hemisphere::{Direction, Hemisphere};
+use unbiased::paths::room::{BoxRoom, Scene};
 use unbiased::paths::{Bounces, FindLight, Paths, reflected};
 use unbiased::placement::{jittered, sobol};
 use unbiased::rectangle::{Integrand, Rectangle};

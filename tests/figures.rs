@@ -8,13 +8,14 @@ use std::process::Command;
 
 use proptest::prelude::*;
 use unbiased::Error;
-use unbiased::box_room::{BoxRoom, Scene};
-use unbiased::figure::{self, Edition, Figure};
-use unbiased::hemisphere::Hemisphere::{Cosine, Uniform};
 use unbiased::inversion::Exponential;
+use unbiased::lambertian::hemisphere::Hemisphere::{Cosine, Uniform};
+use unbiased::paths::room::{BoxRoom, Scene};
 use unbiased::paths::{Bounces, FindLight, Paths};
+use unbiased::plot::{Edition, Figure};
 use unbiased::rectangle::Rectangle;
 use unbiased::roulette::LightModel;
+use unbiased::{inversion, lambertian, paths, rectangle, roulette, workbook};
 
 fn paths(scene: Scene, bounces: Bounces, light: FindLight) -> Paths {
     Paths::new(BoxRoom::new(scene).unwrap(), bounces, Cosine, light).unwrap()
@@ -54,7 +55,7 @@ fn texts(figure: &Figure) -> Vec<(String, [f64; 4])> {
 
 /// That paths are drawn as they should be, and as many as the title says.
 fn assert_drawn(paths: &Paths, bounces: usize, seed: u64) -> usize {
-    let [student, solved] = figure::paths_drawn(paths, 3, seed).unwrap();
+    let [student, solved] = paths::figures::paths_drawn(paths, 3, seed).unwrap();
     let mut drawn = 0;
     let mut vertices: Vec<[f64; 2]> = Vec::new();
     for number in ["①", "②", "③"] {
@@ -106,7 +107,7 @@ fn the_sheets_scene_shows_three_paths_of_two_and_of_three_bounces() {
         for (bounces, name) in [(2, "4_1_paths"), (3, "4_2_paths")] {
             let paths = paths(Scene::default(), Bounces::Exactly(bounces), FindLight::BySampling);
             assert_eq!(assert_drawn(&paths, bounces as usize, seed), 3, "{bounces} bounces, seed {seed}");
-            let [_, solved] = figure::paths_drawn(&paths, 3, seed).unwrap();
+            let [_, solved] = paths::figures::paths_drawn(&paths, 3, seed).unwrap();
             assert_eq!(solved.name(), name);
             let texts = texts(&solved);
             assert!(texts.len() >= 12, "{texts:?}");
@@ -136,7 +137,7 @@ fn paths_are_drawn_from_where_p_is_seen_beside_the_cube() {
         for bounces in [2, 3] {
             let paths = paths(scene, Bounces::Exactly(bounces), FindLight::BySampling);
             assert!(assert_drawn(&paths, bounces as usize, 1) >= 1, "{point:?}, {bounces} bounces");
-            let [student, solved] = figure::paths_drawn(&paths, 3, 1).unwrap();
+            let [student, solved] = paths::figures::paths_drawn(&paths, 3, 1).unwrap();
             assert!(student.svg().contains(across) && solved.svg().contains(across), "{point:?}");
         }
     }
@@ -161,7 +162,8 @@ fn what_cannot_be_drawn_is_refused_or_said() {
         (Bounces::All(0.8), u64::from(u32::MAX)),
         (Bounces::AllByThroughput, u64::from(u32::MAX)),
     ] {
-        let refused = figure::paths_drawn(&paths(Scene::default(), bounces, FindLight::BySampling), 3, 1);
+        let refused =
+            paths::figures::paths_drawn(&paths(Scene::default(), bounces, FindLight::BySampling), 3, 1);
         assert!(matches!(refused, Err(Error::Count { value, .. }) if value == most), "{bounces:?}");
     }
     let sheet = Scene::default();
@@ -172,7 +174,8 @@ fn what_cannot_be_drawn_is_refused_or_said() {
         Scene { light_half_width: 0.0, ..sheet },
     ] {
         let [_, solved] =
-            figure::paths_drawn(&paths(dark, Bounces::Exactly(2), FindLight::BySampling), 3, 1).unwrap();
+            paths::figures::paths_drawn(&paths(dark, Bounces::Exactly(2), FindLight::BySampling), 3, 1)
+                .unwrap();
         assert_eq!(solved.title(), "No sampled paths of two bounces");
         assert!(solved.svg().contains("No light leaves p after that many bounces"));
     }
@@ -184,7 +187,7 @@ proptest! {
     fn wherever_p_is_what_is_drawn_is_right(
         face in 0usize..11, u in 0.0f64..=1.0, v in 0.0f64..=1.0, half_width in 0.0f64..=2.0, seed: u64,
     ) {
-        let face = unbiased::box_room::Face::ALL[face];
+        let face = unbiased::paths::room::Face::ALL[face];
         let [low, high] = face.bounds();
         let at = |t: [f64; 3]| [low.x + t[0] * (high.x - low.x), low.y + t[1] * (high.y - low.y), low.z + t[2] * (high.z - low.z)];
         let point = if low.x == high.x { at([0.0, u, v]) } else if low.y == high.y { at([u, 0.0, v]) } else { at([u, v, 0.0]) };
@@ -200,7 +203,7 @@ proptest! {
 /// The worksheet's cumulative values, 0.33502 − 0.31276 (±0.00001 each), and the figure's own 95 % interval, ±0.000012: an alarm that is false has 1e-9. A bias of 0.3 % would be seen.
 #[test]
 fn the_third_bar_is_what_two_other_programs_found() {
-    let figure = figure::radiance_by_bounces(&BoxRoom::new(Scene::default()).unwrap(), 1).unwrap();
+    let figure = paths::figures::radiance_by_bounces(&BoxRoom::new(Scene::default()).unwrap(), 1).unwrap();
     assert_eq!(figure.title(), "Each bounce adds less");
     assert_eq!(series(&figure, "exact").len(), 2);
     let found = series(&figure, "estimated");
@@ -213,7 +216,7 @@ fn the_third_bar_is_what_two_other_programs_found() {
 #[test]
 fn bars_are_called_exact_where_they_are() {
     let room = BoxRoom::new(Scene { point: [2.0, 2.0, 4.0], wall_albedo: 0.99, ..Scene::default() }).unwrap();
-    let figure = figure::radiance_by_bounces(&room, 1).unwrap();
+    let figure = paths::figures::radiance_by_bounces(&room, 1).unwrap();
     // the ceiling gets no light at once, so the second bounce adds more than the first
     assert_ne!(figure.title(), "Each bounce adds less");
     assert!(figure.svg().contains("k = 1: exact") && !figure.svg().contains("k = 1, 2"));
@@ -225,7 +228,7 @@ fn bars_are_called_exact_where_they_are() {
 #[test]
 fn all_light_falls_to_its_truth_where_hardly_anything_is_absorbed() {
     let room = BoxRoom::new(Scene { wall_albedo: 0.99, ..Scene::default() }).unwrap();
-    let figures = figure::path_errors(&room, 1).unwrap();
+    let figures = paths::figures::path_errors(&room, 1).unwrap();
     assert!(series(&figures[0], "roulette q = 0.8").is_empty(), "its variance may be infinite");
     // the points come before the line
     let by_throughput = series(&figures[0], "roulette by throughput");
@@ -237,7 +240,7 @@ fn all_light_falls_to_its_truth_where_hardly_anything_is_absorbed() {
 #[test]
 fn where_nothing_ends_a_path_all_light_is_left_out() {
     let room = BoxRoom::new(Scene { wall_albedo: 1.0, ..Scene::default() }).unwrap();
-    let figures = figure::path_errors(&room, 1).unwrap();
+    let figures = paths::figures::path_errors(&room, 1).unwrap();
     assert!(!series(&figures[0], "sampled, cosine").is_empty());
     assert!(series(&figures[0], "k ≤ 4").is_empty());
     assert!(figures[0].svg().contains("All light is left out"));
@@ -245,7 +248,7 @@ fn where_nothing_ends_a_path_all_light_is_left_out() {
 
 #[test]
 fn the_words_on_a_sum_in_f32_are_its_numbers() {
-    let figure = figure::running_mean_errors(1).unwrap();
+    let figure = workbook::extremes::running_mean_errors(1).unwrap();
     let errors: Vec<f64> = series(&figure, "f32").iter().map(|row| 100.0 * row[1]).collect();
     let worst = errors.iter().fold(0.0, |worst: f64, error| worst.max(*error));
     let words = format!("reaches {worst:.1} %, and is {:.1} % at the end", errors[errors.len() - 1]);
@@ -363,18 +366,22 @@ fn figures_of_the_exponential_read_at_every_scale() {
     for rate in SCALES {
         let exponential = Exponential::new(rate).unwrap();
         for u in [0.0, 1e-300, 1e-6, 0.05, 0.2, 0.3, 0.5, 0.6321, 0.75, 0.9, 0.97, 0.9999, 1.0 - 1e-12, 1.0] {
-            let drawn = |edition| figure::exponential(&exponential, u, edition);
+            let drawn = |edition| inversion::figures::exponential(&exponential, u, edition);
             assert_drawn_or_refused(drawn(Edition::Solution), &format!("λ = {rate:e}, u = {u}"));
             assert_drawn_or_refused(drawn(Edition::Student), &format!("λ = {rate:e}, u = {u}"));
             assert_eq!(drawn(Edition::Solution).is_ok(), (1e-290..=1e290).contains(&rate));
         }
         for draws in [1, 200] {
             let why = format!("λ = {rate:e}, {draws} draws");
-            assert_drawn_or_refused(figure::empirical_cdf(&exponential, draws, 1), &why);
+            assert_drawn_or_refused(inversion::figures::empirical_cdf(&exponential, draws, 1), &why);
         }
-        assert_drawn_or_refused(figure::tails(&exponential, 1 << 10, 1), &format!("λ = {rate:e}"));
+        assert_drawn_or_refused(
+            inversion::figures::tails(&exponential, 1 << 10, 1),
+            &format!("λ = {rate:e}"),
+        );
     }
-    let drawn = figure::exponential(&Exponential::new(1e4).unwrap(), 0.75, Edition::Solution).unwrap();
+    let drawn =
+        inversion::figures::exponential(&Exponential::new(1e4).unwrap(), 0.75, Edition::Solution).unwrap();
     for text in ["U = 0.75", "≈ 0.000139", "x (10⁻⁴)", "p(x) = 2500"] {
         assert!(drawn.svg().contains(text), "{text}");
     }
@@ -386,33 +393,36 @@ fn figures_of_the_rectangle_read_at_every_scale() {
         for [x, y] in [[[-half, half], [-half, half]], [[0.0, half], [0.25 * half, 3.0 * half]]] {
             let rectangle = Rectangle::new(x, y).unwrap();
             let why = format!("{x:?} × {y:?}");
-            assert_drawn_or_refused(figure::sampling_errors(rectangle, 1), &why);
-            assert_drawn_or_refused(figure::running_means(rectangle, 1), &why);
+            assert_drawn_or_refused(rectangle::figures::sampling_errors(rectangle, 1), &why);
+            assert_drawn_or_refused(rectangle::figures::running_means(rectangle, 1), &why);
         }
     }
 }
 
 #[test]
 fn figures_of_directions_and_bounces_read_whatever_is_drawn() {
-    assert_legible(&figure::integrand().unwrap(), "");
+    assert_legible(&lambertian::figures::integrand().unwrap(), "");
     for hemisphere in [Uniform, Cosine] {
         for count in [0, 1, 600] {
             assert_legible(
-                &figure::directions(hemisphere, count, 1).unwrap(),
+                &lambertian::figures::directions(hemisphere, count, 1).unwrap(),
                 &format!("{count} directions"),
             );
         }
     }
     for draws in [2, 10_000] {
         let why = format!("{draws} draws");
-        assert_drawn_or_refused(figure::variance_against_exponent(draws, 1), &why);
-        assert_drawn_or_refused(figure::variance_against_ring(draws, 1), &why);
-        assert_drawn_or_refused(figure::mean_bounces(draws, 1), &why);
-        assert_drawn_or_refused(figure::occluded_fraction(draws, 1), &why);
+        assert_drawn_or_refused(lambertian::figures::variance_against_exponent(draws, 1), &why);
+        assert_drawn_or_refused(lambertian::figures::variance_against_ring(draws, 1), &why);
+        assert_drawn_or_refused(roulette::figures::mean_bounces(draws, 1), &why);
+        assert_drawn_or_refused(paths::figures::occluded_fraction(draws, 1), &why);
     }
     for p in [1e-300, 1e-6, 0.2, 0.5, 0.8, 0.83, 0.987_654_321, 0.9999, 1.0 - 1e-9] {
         for draws in [1, 2000] {
-            assert_drawn_or_refused(figure::bounces([p, 1.0 / 3.0], draws, 1), &format!("p_rr = {p}"));
+            assert_drawn_or_refused(
+                roulette::figures::bounces([p, 1.0 / 3.0], draws, 1),
+                &format!("p_rr = {p}"),
+            );
         }
     }
 }
@@ -421,8 +431,8 @@ fn figures_of_directions_and_bounces_read_whatever_is_drawn() {
 #[test]
 fn figures_of_roulette_read_on_the_sheet() {
     let model = LightModel::new(0.8, 0.5).unwrap();
-    assert_drawn_or_refused(figure::roulette_trade(&model, 0.8), "the trade");
-    assert_drawn_or_refused(figure::truncation(&model, 0.8, 8, 2, 1), "truncation");
+    assert_drawn_or_refused(roulette::figures::roulette_trade(&model, 0.8), "the trade");
+    assert_drawn_or_refused(roulette::figures::truncation(&model, 0.8, 8, 2, 1), "truncation");
 }
 
 #[test]
@@ -430,23 +440,23 @@ fn figures_of_the_room_read_at_every_radiance() {
     for radiance in [0.0, 1e-100, 1e-9, 1e-3, 1.0, 1e4, 1e12, 1e100] {
         let room = BoxRoom::new(Scene { radiance, ..Scene::default() }).unwrap();
         let why = format!("radiance {radiance}");
-        assert_drawn_or_refused(figure::two_bounces_converging(&room, 1), &why);
+        assert_drawn_or_refused(paths::figures::two_bounces_converging(&room, 1), &why);
     }
     let bright = BoxRoom::new(Scene { radiance: 1e12, ..Scene::default() }).unwrap();
-    assert_drawn_or_refused(figure::radiance_by_bounces(&bright, 1), "radiance 1e12");
+    assert_drawn_or_refused(paths::figures::radiance_by_bounces(&bright, 1), "radiance 1e12");
 }
 
 #[test]
 fn the_students_files_hold_nothing_of_the_answer() {
     for rate in [1.0, 2.5, 1e4] {
         let exponential = Exponential::new(rate).unwrap();
-        let student = |u| figure::exponential(&exponential, u, Edition::Student).unwrap();
+        let student = |u| inversion::figures::exponential(&exponential, u, Edition::Student).unwrap();
         // the same for every u, so that nothing of the sample can be in it
         assert!([0.1, 0.9999, 1.0].iter().all(|u| student(*u) == student(0.75)));
         assert_eq!(student(0.75).csv().lines().count(), 1);
         assert_eq!(student(0.75).name(), "1_2_exponential_student");
         // on the same canvas: all that the student's has, but for title and description, the solution has too
-        let solution = figure::exponential(&exponential, 0.75, Edition::Solution).unwrap();
+        let solution = inversion::figures::exponential(&exponential, 0.75, Edition::Solution).unwrap();
         let drawn = |figure: &Figure| figure.svg().split_once("</desc>").unwrap().1.to_string();
         for line in drawn(&student(0.75)).lines() {
             assert!(drawn(&solution).contains(line), "{line}");
@@ -457,7 +467,7 @@ fn the_students_files_hold_nothing_of_the_answer() {
     }
     for bounces in [2, 3] {
         let paths = paths(Scene::default(), Bounces::Exactly(bounces), FindLight::BySampling);
-        let [student, solved] = figure::paths_drawn(&paths, 3, 1).unwrap();
+        let [student, solved] = paths::figures::paths_drawn(&paths, 3, 1).unwrap();
         let lines = |figure: &Figure| figure.csv().lines().map(str::to_string).collect::<Vec<_>>();
         assert!(lines(&student).iter().all(|line| lines(&solved).contains(line)));
         assert!(lines(&student).iter().all(|line| {
@@ -473,7 +483,7 @@ fn the_students_files_hold_nothing_of_the_answer() {
 
 #[test]
 fn what_cannot_be_written_is_a_sentence() {
-    let figure = figure::integrand().unwrap();
+    let figure = lambertian::figures::integrand().unwrap();
     let error = figure.save(Path::new("/proc/no/such/folder")).unwrap_err().to_string();
     assert!(error.contains("could not be written"), "{error}");
 }

@@ -15,16 +15,16 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use rand::distr::Distribution;
-use unbiased::box_room::{BoxRoom, Face, nearest_hit, visible};
 use unbiased::check::{
     self, Attempt, Candidate, Diagnosis, Exercise, Finding, Measurement, Mistake, Probe, Problem, Unbiased,
     Verdict,
 };
-use unbiased::hemisphere::Hemisphere;
 use unbiased::inversion::Exponential;
 use unbiased::inversion::mistakes::Samples;
+use unbiased::lambertian::hemisphere::Hemisphere;
 use unbiased::lambertian::mistakes::Reflection;
 use unbiased::paths::mistakes::LightOfPaths;
+use unbiased::paths::room::{BoxRoom, Face, nearest_hit, visible};
 use unbiased::paths::{FindLight, Paths};
 use unbiased::rectangle::mistakes::Integral;
 use unbiased::roulette::Roulette;
@@ -131,7 +131,7 @@ fn right() -> Vec<(&'static str, Attempt<'static>)> {
                 let z = 2.0 * rng.uniform() - 1.0;
                 let (sin, cos) = (2.0 * PI * rng.uniform()).sin_cos();
                 let r = (1.0 - z * z).sqrt();
-                let at = unbiased::hemisphere::Direction::new(r * cos, r * sin, z + 1.0);
+                let at = unbiased::lambertian::hemisphere::Direction::new(r * cos, r * sin, z + 1.0);
                 at.map_or(0.0, |at| p.albedo * p.light(&at))
             }),
         ),

@@ -12,7 +12,7 @@ use std::f64::consts::{FRAC_1_PI, FRAC_1_SQRT_2, PI, TAU};
 use approx::assert_relative_eq;
 use proptest::prelude::*;
 use rand::distr::Distribution;
-use unbiased::hemisphere::{Direction, Hemisphere};
+use unbiased::lambertian::hemisphere::{Direction, Hemisphere};
 use unbiased::{Budget, Density, Run, Stream, from_fn};
 
 /// The length of `direction` minus 1, in units of 2⁻⁵², itself computed with twice the digits of f64.

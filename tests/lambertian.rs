@@ -13,7 +13,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI, TAU};
 use approx::assert_relative_eq;
 use proptest::prelude::*;
 use rayon::prelude::*;
-use unbiased::hemisphere::{Direction, Hemisphere};
+use unbiased::lambertian::hemisphere::{Direction, Hemisphere};
 use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
 use unbiased::{Budget, Density, Error, Estimate, Estimator, Stream, estimate, from_fn};
 

@@ -16,9 +16,9 @@ use std::f64::consts::{FRAC_1_PI, PI};
 use glam::DVec3;
 use rand::distr::Distribution;
 use rayon::prelude::*;
-use unbiased::box_room::{BoxRoom, Face, Scene, Vertex, nearest_hit, visible};
-use unbiased::hemisphere::Hemisphere;
 use unbiased::lambertian::Lambertian;
+use unbiased::lambertian::hemisphere::Hemisphere;
+use unbiased::paths::room::{BoxRoom, Face, Scene, Vertex, nearest_hit, visible};
 use unbiased::paths::{Bounces, FindLight, Paths, reflected};
 use unbiased::{Budget, Estimate, Estimator, Run, Stream, estimate, from_fn};
 
@@ -611,7 +611,7 @@ fn polygonal_lights_fill_their_part_of_the_sky() {
             }
         }
         p *= FRAC_1_PI;
-        let known = unbiased::box_room::form_factor(&[a, b, c], DVec3::ZERO, DVec3::Z);
+        let known = unbiased::paths::room::form_factor(&[a, b, c], DVec3::ZERO, DVec3::Z);
         assert!((known / p - 1.0).abs() <= 1e-6, "{known} {p}");
         held(&cosine, 2, 800, 450 + i as u64, 0.61 * 7.0 * p, 1e-3, "polygon");
     }

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use proptest::prelude::*;
-use unbiased::box_room::{BoxRoom, Scene};
-use unbiased::hemisphere::Hemisphere;
 use unbiased::inversion::Exponential;
+use unbiased::lambertian::hemisphere::Hemisphere;
+use unbiased::paths::room::{BoxRoom, Scene};
 use unbiased::paths::{Bounces, FindLight, Paths};
 use unbiased::{Budget, Error, Estimator, Part, Result, Run, from_fn, merge};
 

@@ -542,7 +542,7 @@ fn a_notebook_shows_what_to_mind() {
 fn figures_leave_nothing_out_in_silence() {
     let many = (0..18)
         .map(|k| named(&format!("rival {k:02}"), measured(Nature::Unbiased, 2.0, 1.5f64.powi(k), 1e-8)));
-    let drawn = unbiased::figure::trade("trade_test", "Many", &comparison(many)).unwrap();
+    let drawn = unbiased::trade::figures::comparison("trade_test", "Many", &comparison(many)).unwrap();
     assert!(drawn.svg().contains("Not drawn, as there are only sixteen kinds of lines: rival 16, rival 17."));
     assert!((0..16).all(|k| drawn.csv().contains(&format!("Efficiency,rival {k:02},"))));
     // 1.5¹⁷ = 985
@@ -551,7 +551,10 @@ fn figures_leave_nothing_out_in_silence() {
     let pair = |variance: f64, evaluations: f64| {
         let best = measured(Nature::Unbiased, 2.0, 1.0, 1e-8);
         let other = Measured { evaluations, ..measured(Nature::Unbiased, 2.0, variance, 1e-8) };
-        unbiased::figure::trade("trade_test", "Two", &comparison([best, other])).unwrap().svg().to_owned()
+        unbiased::trade::figures::comparison("trade_test", "Two", &comparison([best, other]))
+            .unwrap()
+            .svg()
+            .to_owned()
     };
     // within the axes; beyond them, a round number below; not told apart: none
     assert!(pair(3.0, 1.0).contains("× 3.0") && !pair(3.0, 1.0).contains("&gt; ×"));
@@ -577,7 +580,8 @@ fn figures_leave_nothing_out_in_silence() {
         odd[3..].to_vec(),
         odd.to_vec(),
     ] {
-        let found = unbiased::figure::trade("trade_test", "Odd", &comparison(rivals.clone())).unwrap();
+        let found =
+            unbiased::trade::figures::comparison("trade_test", "Odd", &comparison(rivals.clone())).unwrap();
         assert!(!found.svg().contains("NaN") && !found.csv().contains("NaN"), "{rivals:?}");
         assert_eq!(
             found.svg().contains(">infinite variance<") || found.svg().contains("infinite variance\n"),
@@ -589,7 +593,7 @@ fn figures_leave_nothing_out_in_silence() {
 /// The reference in `examples/trade.rs` for all bounces in the sheet's scene: z ≤ 7, a false alarm in 4e11; at 2·10⁵ paths it sees what is wrong by 0.3 %.
 #[test]
 fn the_reference_for_all_bounces_is_right() {
-    use unbiased::box_room::{BoxRoom, Scene};
+    use unbiased::paths::room::{BoxRoom, Scene};
     use unbiased::paths::{Bounces, FindLight, Paths};
     let source = include_str!("../examples/trade.rs");
     let given = source.split_once("const ALL_LIGHT: [f64; 2] = [").unwrap().1.split_once(']').unwrap().0;
@@ -598,9 +602,13 @@ fn the_reference_for_all_bounces_is_right() {
         panic!("{given}")
     };
     let room = BoxRoom::new(Scene::default()).unwrap();
-    let paths =
-        Paths::new(room, Bounces::All(0.9), unbiased::hemisphere::Hemisphere::Cosine, FindLight::BySampling)
-            .unwrap();
+    let paths = Paths::new(
+        room,
+        Bounces::All(0.9),
+        unbiased::lambertian::hemisphere::Hemisphere::Cosine,
+        FindLight::BySampling,
+    )
+    .unwrap();
     let found = unbiased::estimate(&paths, Budget::Draws(common::draws(200_000)), common::seed(9)).unwrap();
     let tolerance = 7.0 * found.std_error().unwrap().hypot(error);
     assert!((found.mean() - light).abs() <= tolerance, "{found} and {light}");

@@ -26,11 +26,11 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use rand::distr::Distribution;
 use statrs::distribution::{Beta, ContinuousCDF, DiscreteCDF, Gamma, Normal, Poisson, Weibull};
-use unbiased::box_room::{BoxRoom, Scene};
-use unbiased::check::{self, Unbiased, Verdict, distributed_as, exactly};
-use unbiased::hemisphere::{Direction, Hemisphere};
+use unbiased::check::{Unbiased, Verdict, distributed_as, exactly};
 use unbiased::inversion::{Exponential, Inversion};
+use unbiased::lambertian::hemisphere::{Direction, Hemisphere};
 use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
+use unbiased::paths::room::{BoxRoom, Scene};
 use unbiased::paths::{Bounces, FindLight, Paths, reflected};
 use unbiased::rectangle::Rectangle;
 use unbiased::roulette::{LightModel, Roulette};
@@ -596,7 +596,7 @@ fn samplers_of_section_3() {
     let mut bands = 0;
     for (i, hemisphere) in Hemisphere::ALL.into_iter().enumerate() {
         let seed = common::seed(900 + i as u64);
-        let agreement = check::directions(&hemisphere, hemisphere, 0.005, ALPHA, seed).unwrap();
+        let agreement = common::directions(&hemisphere, hemisphere, 0.005, ALPHA, seed).unwrap();
         assert!(agreement.agrees, "{hemisphere:?}: {agreement}");
         bands += 1;
     }

@@ -2,10 +2,10 @@
 
 mod common;
 
-use unbiased::box_room::{BoxRoom, Scene};
-use unbiased::hemisphere::Hemisphere;
 use unbiased::inversion::Exponential;
 use unbiased::lambertian::Lambertian;
+use unbiased::lambertian::hemisphere::Hemisphere;
+use unbiased::paths::room::{BoxRoom, Scene};
 use unbiased::paths::{Bounces, FindLight, Paths};
 use unbiased::rectangle::{Integrand, Rectangle};
 use unbiased::roulette::Roulette;
@@ -171,7 +171,7 @@ fn drawn_and_filled_have_the_same_moments() {
     }
     let square = Rectangle::WORKSHEET;
     let surface = Lambertian::new(0.8).unwrap();
-    let light = |direction: &unbiased::hemisphere::Direction| 1.0 + direction.vector().x;
+    let light = |direction: &unbiased::lambertian::hemisphere::Direction| 1.0 + direction.vector().x;
     pairs.push(("exponential".into(), Box::new(Exponential::new(0.37).unwrap())));
     pairs.push(("bounces".into(), Box::new(Roulette::new(0.8).unwrap().bounces().by_inversion().unwrap())));
     pairs.push(("square".into(), Box::new(square.independent(|x, y| Integrand::Gaussian.at(x, y)))));
@@ -212,7 +212,7 @@ impl Estimator for Powers<'_> {
 fn wide_ones() -> Vec<(&'static str, Box<dyn Estimator>)> {
     let by = |bounces| paths(Scene::default(), bounces, Hemisphere::Cosine, FindLight::BySampling);
     let surface = Lambertian::new(0.8).unwrap();
-    let light = |direction: &unbiased::hemisphere::Direction| 1.0 + direction.vector().x;
+    let light = |direction: &unbiased::lambertian::hemisphere::Direction| 1.0 + direction.vector().x;
     vec![
         ("exponential", Box::new(Exponential::new(0.37).unwrap())),
         ("bounces", Box::new(Roulette::new(0.8).unwrap().bounces().by_inversion().unwrap())),

@@ -2,8 +2,8 @@
 
 use divan::Bencher;
 use unbiased::Stream;
-use unbiased::box_room::{BoxRoom, Scene};
-use unbiased::hemisphere::Hemisphere;
+use unbiased::lambertian::hemisphere::Hemisphere;
+use unbiased::paths::room::{BoxRoom, Scene};
 use unbiased::paths::{Bounces, FindLight, Paths};
 use unbiased_bench::{sum_of_drawn, sum_of_filled};
 

@@ -1,6 +1,6 @@
 //! Rows of section 4 in which no path found the light.
 
-use unbiased::box_room::BoxRoom;
+use unbiased::paths::room::BoxRoom;
 
 /// Whether every path brought 0 though some light comes to p, in a sentence.
 ///

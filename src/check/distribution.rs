@@ -1,14 +1,12 @@
 //! Is a sampler distributed as claimed? Bands that hold at every number of draws.
 
-use std::f64::consts::TAU;
 use std::fmt;
 
 use rand::distr::Distribution;
 
 use crate::error::{Result, require};
 use crate::estimator::Estimator;
-use crate::hemisphere::{Direction, Hemisphere};
-use crate::inversion::is_probability;
+use crate::float::is_probability;
 use crate::stream::Stream;
 
 /// What a comparison of draws with their claimed distribution found.
@@ -34,16 +32,15 @@ pub struct Agreement {
 pub enum Place {
     /// The empirical cdf at this value.
     Value(f64),
-    /// The empirical cdf of cos θ at this value.
-    CosTheta(f64),
-    /// The empirical cdf of φ/2π at this value.
-    Azimuth(f64),
-    /// The share of directions in this cell of cos θ and φ/2π, each cut into [`CELLS`] equally probable
-    /// parts, counted from 0.
+    /// The empirical cdf of the first uniform number at this value.
+    First(f64),
+    /// The empirical cdf of the second uniform number at this value.
+    Second(f64),
+    /// The share of points in this cell of the two uniform numbers, each cut into [`CELLS`] parts, counted from 0.
     Cell(usize, usize),
 }
 
-/// Parts into which [`directions`] cuts cos θ and φ each.
+/// Parts into which [`points`] cuts each of the two uniform numbers.
 pub const CELLS: usize = 8;
 
 /// Compares a sampler's draws (what the estimator draws) with the cdf claimed for them.
@@ -90,26 +87,30 @@ pub fn distributed_as(
     })
 }
 
-/// Compares drawn directions with the density claimed for them: cos θ and φ/2π by the band of
-/// [`distributed_as`], and both together over 8 × 8 equally probable cells.
+/// Compares drawn points of two dimensions with the density claimed for them. `unwarp` gives the two numbers that
+/// are independent and uniform if a point has that density: the cdf of its first coordinate, say, and that of the
+/// second given the first. Each is compared by the band of [`distributed_as`], and both together over 8 × 8 cells.
 ///
-/// A cell of probability p in which a share p̂ of n directions fell is refused where n·kl(p̂‖p) > ln(2k/α), k
+/// A cell of probability p in which a share p̂ of n points fell is refused where n·kl(p̂‖p) > ln(2k/α), k
 /// the number of cells, kl the relative entropy of two coins: Chernoff's bound, exact for every n and p,
 /// where Pearson's χ² at such levels is not. Each of the three parts has α/3.
 ///
 /// # Errors
-/// If the deviation is not in (0, 1], or α not in (0, 1).
+/// If the deviation is not in (0, 1], α not in (0, 1), or a number that `unwarp` gives is NaN.
 ///
 /// ```
-/// use unbiased::{check, hemisphere::Hemisphere};
+/// use std::f64::consts::TAU;
+/// use unbiased::lambertian::hemisphere::{Direction, Hemisphere::{Cosine, Uniform}};
+/// use unbiased::check;
 ///
-/// assert!(check::directions(&Hemisphere::Cosine, Hemisphere::Cosine, 0.01, 1e-12, 1)?.agrees);
-/// assert!(!check::directions(&Hemisphere::Uniform, Hemisphere::Cosine, 0.01, 1e-12, 1)?.agrees);
+/// let claimed = |w: &Direction| [Cosine.cdf_of_cos_theta(w.cos_theta()), w.phi() / TAU];
+/// assert!(check::points(&Cosine, claimed, 0.01, 1e-12, 1)?.agrees);
+/// assert!(!check::points(&Uniform, claimed, 0.01, 1e-12, 1)?.agrees);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
-pub fn directions(
-    sampler: &impl Distribution<Direction>,
-    claimed: Hemisphere,
+pub fn points<P>(
+    sampler: &impl Distribution<P>,
+    unwarp: impl Fn(&P) -> [f64; 2],
     deviation: f64,
     alpha: f64,
     seed: u64,
@@ -117,21 +118,21 @@ pub fn directions(
     let part = alpha / 3.0;
     let draws = enough(deviation, part)?;
     let mut rng = Stream::new(seed, 0);
-    let (mut cosines, mut azimuths) = (Vec::with_capacity(draws), Vec::with_capacity(draws));
+    let [mut firsts, mut seconds] = [(); 2].map(|()| Vec::with_capacity(draws));
     let mut counts = [[0u64; CELLS]; CELLS];
     for _ in 0..draws {
-        let direction = sampler.sample(&mut rng);
-        let (cos_theta, azimuth) = (direction.cos_theta(), direction.phi() / TAU);
-        let cell = |probability: f64| ((probability * CELLS as f64) as usize).min(CELLS - 1);
-        counts[cell(claimed.cdf_of_cos_theta(cos_theta))][cell(azimuth)] += 1;
-        cosines.push(cos_theta);
-        azimuths.push(azimuth);
+        let [u, v] = unwarp(&sampler.sample(&mut rng));
+        let cell = |number: f64| ((number * CELLS as f64) as usize).min(CELLS - 1);
+        counts[cell(u)][cell(v)] += 1;
+        firsts.push(u);
+        seconds.push(v);
     }
-    let (of_cosine, cosine) = largest_deviation(&mut cosines, |c| claimed.cdf_of_cos_theta(c))?;
-    let (of_azimuth, azimuth) = largest_deviation(&mut azimuths, |share| share.clamp(0.0, 1.0))?;
+    let uniform = |number: f64| number.clamp(0.0, 1.0);
+    let (of_first, first) = largest_deviation(&mut firsts, uniform)?;
+    let (of_second, second) = largest_deviation(&mut seconds, uniform)?;
     let mut strains = vec![
-        (of_cosine / band(draws, part), Place::CosTheta(cosine)),
-        (of_azimuth / band(draws, part), Place::Azimuth(azimuth)),
+        (of_first / band(draws, part), Place::First(first)),
+        (of_second / band(draws, part), Place::Second(second)),
     ];
     let cells = (CELLS * CELLS) as f64;
     for (row, counts) in counts.iter().enumerate() {
@@ -141,14 +142,14 @@ pub fn directions(
         }
     }
     let (strain, place) =
-        strains.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, Place::CosTheta(0.0)));
+        strains.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, Place::First(0.0)));
     Ok(Agreement {
         agrees: strain <= 1.0,
         strain,
         place,
         draws,
         alpha,
-        unseen: "structure finer than a cell that leaves cos θ and φ as they should be, dependence between directions",
+        unseen: "structure finer than a cell that leaves both numbers uniform, dependence between points",
     })
 }
 
@@ -209,9 +210,9 @@ impl fmt::Display for Agreement {
         let verdict = if self.agrees { "as claimed" } else { "not as claimed" };
         let place = match self.place {
             Place::Value(x) => format!("the cdf at {x:.6}"),
-            Place::CosTheta(c) => format!("the cdf of cos θ at {c:.6}"),
-            Place::Azimuth(share) => format!("the cdf of φ/2π at {share:.6}"),
-            Place::Cell(row, column) => format!("the cell ({row}, {column}) of cos θ and φ"),
+            Place::First(u) => format!("the cdf of the first uniform number at {u:.6}"),
+            Place::Second(v) => format!("the cdf of the second uniform number at {v:.6}"),
+            Place::Cell(row, column) => format!("the cell ({row}, {column}) of the two uniform numbers"),
         };
         write!(
             f,

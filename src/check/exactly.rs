@@ -10,9 +10,9 @@ use rand::Rng;
 use crate::error::{Error, Result, require_count};
 use crate::estimator::Estimator;
 use crate::fast::widest;
-use crate::placement::{Placement, Sobol};
 use crate::run::Watch;
 use crate::stream::Stream;
+use crate::stream::points::{Placement, Sobol};
 
 /// The exact moments of an estimator, each to the accuracy that [`exactly`] states.
 #[derive(Debug, Clone, Copy, PartialEq)]

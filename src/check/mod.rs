@@ -20,7 +20,7 @@ mod wealth;
 pub use attempt::{Attempt, measure, seed_of};
 pub use counterexample::Counterexample;
 pub use diagnose::{Candidate, Diagnosis, Finding, Group, diagnose};
-pub use distribution::{Agreement, CELLS, Place, directions, distributed_as};
+pub use distribution::{Agreement, CELLS, Place, distributed_as, points};
 pub use exactly::{Exact, exactly};
 pub(crate) use exercise::{About, Words};
 pub use exercise::{Exercise, Given, Mistake, Probe, Problem};

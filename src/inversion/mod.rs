@@ -5,7 +5,11 @@
 //!
 //! One's own estimator for question 1.1 is checked by `examples/check_mine.rs`.
 
+#[cfg(feature = "workbook")]
+pub mod figures;
 pub mod mistakes;
+#[cfg(feature = "workbook")]
+pub(crate) mod questions;
 
 use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
@@ -13,7 +17,7 @@ use rand::distr::{Distribution, StandardUniform};
 use crate::error::{Error, Result, require};
 use crate::estimator::{Density, Estimator, from_uniforms};
 use crate::fast;
-use crate::float::Extended;
+use crate::float::{Extended, ROUNDING, is_probability};
 use crate::stream::Stream;
 
 /// The exponential distribution with rate λ: p(x) = λ e^(−λx) for x ≥ 0.
@@ -225,17 +229,9 @@ pub struct Inversion<F> {
     within: [f64; 2],
 }
 
-/// What a cdf may be off by: sums of weights end an ulp or two from 1, and library cdfs are good to 1e-14 only.
-const ROUNDING: f64 = 1.0 / (1u64 << 40) as f64;
-
 /// How far out a cdf is asked to see whether it ends at 0 or 1, if the support reaches further: what a library computes of
 /// larger numbers, λx for one, is often infinite, and some of their cdfs panic there.
 const FARTHEST: f64 = f64::from_bits((1023 + 960) << 52);
-
-/// Whether it is in [0, 1] but for rounding. NaN is not.
-pub(crate) fn is_probability(computed: f64) -> bool {
-    (-ROUNDING..=1.0 + ROUNDING).contains(&computed)
-}
 
 impl<F: Fn(f64) -> f64> Inversion<F> {
     /// The inverse of `cdf` on the support [low, high], whose ends may be infinite. There F is 0 and 1, and `cdf`

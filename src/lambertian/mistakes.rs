@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use super::Lambertian;
 use crate::check::{About, Exercise, Given, Mistake, Problem, Words};
 use crate::error::Result;
-use crate::hemisphere::Direction;
+use crate::lambertian::hemisphere::Direction;
 use crate::stream::Stream;
 
 /// The radiance that a surface reflects under a light: the estimator's draw is f_r L_i cos θ/p, or any other

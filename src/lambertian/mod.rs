@@ -6,14 +6,19 @@
 //!
 //! One's own estimator for question 3.5 is checked by `examples/check_mine.rs`.
 
+#[cfg(feature = "workbook")]
+pub mod figures;
+pub mod hemisphere;
 pub mod mistakes;
+#[cfg(feature = "workbook")]
+pub(crate) mod questions;
 
 use std::f64::consts::PI;
 
 use crate::error::{Result, require};
 use crate::estimator::{Density, Estimator, f_over_p, from_uniforms};
 use crate::float::Extended;
-use crate::hemisphere::{Direction, Hemisphere};
+use crate::lambertian::hemisphere::{Direction, Hemisphere};
 
 /// A diffuse surface: it reflects the part ρ of the light that falls on it, the same radiance in all directions.
 ///
@@ -111,7 +116,7 @@ impl Lambertian {
 /// A light whose reflection is known in closed form, and the variance of each way to estimate it (worksheet 3.6).
 ///
 /// ```
-/// use unbiased::hemisphere::Hemisphere::{Cosine, Uniform};
+/// use unbiased::lambertian::hemisphere::Hemisphere::{Cosine, Uniform};
 /// use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
 ///
 /// let white = Lambertian::new(1.0)?;

@@ -10,9 +10,9 @@ use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 
 use super::way::{BY_CHANCE, GOES_ON, Hidden, RIGHT, Spot, TRIES, Way};
-use crate::box_room::{BoxRoom, Scene};
 use crate::check::{About, Exercise, Given, Mistake, Problem, Words};
-use crate::hemisphere::Hemisphere;
+use crate::lambertian::hemisphere::Hemisphere;
+use crate::paths::room::{BoxRoom, Scene};
 use crate::stream::Stream;
 
 /// The light that leaves a room's point p after some bounces: the estimator's draw is one of an estimate of

@@ -1,4 +1,4 @@
-//! Section 4: light along paths in the [box room](crate::box_room).
+//! Section 4: light along paths in the [box room](room).
 //!
 //! # From one bounce to all
 //! Light leaves p towards the eye in the direction ω_o as (*the rendering equation*, Kajiya 1986)
@@ -27,15 +27,22 @@
 use glam::DVec3;
 use rand::distr::Distribution;
 
-use crate::box_room::{BoxRoom, Face, Vertex, nearest};
 use crate::error::{Result, require, require_count};
 use crate::estimator::{Density, Estimator, from_fn};
 use crate::fast::Real;
-use crate::hemisphere::{Direction, Hemisphere};
+use crate::lambertian::hemisphere::{Direction, Hemisphere};
+use crate::paths::room::{BoxRoom, Face, Vertex, nearest};
 use crate::stream::Stream;
 
+#[cfg(feature = "workbook")]
+pub mod figures;
 pub mod mistakes;
+#[cfg(feature = "workbook")]
+pub(crate) mod questions;
+pub mod room;
 mod side_by_side;
+#[cfg(feature = "workbook")]
+mod side_view;
 mod way;
 
 /// How a path finds the light.
@@ -77,8 +84,8 @@ const MOST_ALBEDO: f64 = 0.999;
 /// The light that leaves p, estimated along one random path a draw, in W m⁻² sr⁻¹.
 ///
 /// ```
-/// use unbiased::box_room::{BoxRoom, Scene};
-/// use unbiased::hemisphere::Hemisphere;
+/// use unbiased::paths::room::{BoxRoom, Scene};
+/// use unbiased::lambertian::hemisphere::Hemisphere;
 /// use unbiased::paths::{Bounces, FindLight, Paths};
 /// use unbiased::{Budget, estimate};
 ///
@@ -165,8 +172,8 @@ impl Paths {
     /// less than 1e-10 of L_e A/π, or of L_e where light is found by chance.
     ///
     /// ```
-    /// use unbiased::box_room::{BoxRoom, Scene};
-    /// use unbiased::hemisphere::Hemisphere;
+    /// use unbiased::paths::room::{BoxRoom, Scene};
+    /// use unbiased::lambertian::hemisphere::Hemisphere;
     /// use unbiased::paths::{Bounces, FindLight, Paths};
     /// use unbiased::{Budget, estimate};
     ///
@@ -215,8 +222,8 @@ impl Paths {
     /// The scene.
     ///
     /// ```
-    /// # use unbiased::box_room::{BoxRoom, Scene};
-    /// # use unbiased::hemisphere::Hemisphere;
+    /// # use unbiased::paths::room::{BoxRoom, Scene};
+    /// # use unbiased::lambertian::hemisphere::Hemisphere;
     /// # use unbiased::paths::{Bounces, FindLight, Paths};
     /// let room = BoxRoom::new(Scene::default())?;
     /// let paths = Paths::new(room, Bounces::UpTo(3), Hemisphere::Cosine, FindLight::BySampling)?;
@@ -244,8 +251,8 @@ impl Paths {
     /// ∫ (cd)ⁿ/(c² + d² + y²)²ⁿ over d > a, 0.131/a for n = 2 and 0.00112/a⁵ for n = 4.
     ///
     /// ```
-    /// # use unbiased::box_room::{BoxRoom, Scene};
-    /// # use unbiased::hemisphere::Hemisphere;
+    /// # use unbiased::paths::room::{BoxRoom, Scene};
+    /// # use unbiased::lambertian::hemisphere::Hemisphere;
     /// # use unbiased::paths::{Bounces, FindLight, Paths};
     /// let room = BoxRoom::new(Scene::default())?;
     /// let by = |directions| Paths::new(room, Bounces::Exactly(64), directions, FindLight::BySampling);
@@ -353,8 +360,8 @@ impl Paths {
     /// One path with its vertices, for drawing: the same that [`draw`](Estimator::draw) takes from the same stream.
     ///
     /// ```
-    /// # use unbiased::box_room::{BoxRoom, Scene};
-    /// # use unbiased::hemisphere::Hemisphere;
+    /// # use unbiased::paths::room::{BoxRoom, Scene};
+    /// # use unbiased::lambertian::hemisphere::Hemisphere;
     /// # use unbiased::paths::{Bounces, FindLight, Paths};
     /// # use unbiased::{Estimator, Stream};
     /// let room = BoxRoom::new(Scene::default())?;
@@ -547,8 +554,8 @@ pub struct Sample {
 /// the part of two bounces, without any variance from p_j on.
 ///
 /// ```
-/// use unbiased::box_room::{BoxRoom, Scene};
-/// use unbiased::hemisphere::Hemisphere;
+/// use unbiased::paths::room::{BoxRoom, Scene};
+/// use unbiased::lambertian::hemisphere::Hemisphere;
 /// use unbiased::paths::{Bounces, FindLight, Paths, reflected};
 /// use unbiased::{Budget, estimate};
 ///

@@ -8,9 +8,9 @@
 use pulp::NullaryFnOnce;
 
 use super::{Ending, Paths, by_throughput, power};
-use crate::box_room::{BoxRoom, Face};
 use crate::fast::{Real, widest};
-use crate::hemisphere::Hemisphere;
+use crate::lambertian::hemisphere::Hemisphere;
+use crate::paths::room::{BoxRoom, Face};
 use crate::stream::{Abreast, LANES, Stream};
 
 /// A number for each path of a row.
@@ -536,12 +536,12 @@ impl<T: Real> Step<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::box_room::Scene;
     use crate::estimator::Estimator;
     use crate::fast::tests::both;
     use crate::paths::Bounces;
     use crate::paths::FindLight;
-    use crate::placement::{Grid, Placement, Sobol};
+    use crate::paths::room::Scene;
+    use crate::stream::points::{Grid, Placement, Sobol};
 
     fn every_way(mut see: impl FnMut(Paths)) {
         let scenes = [

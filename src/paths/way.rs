@@ -6,8 +6,8 @@ use std::f64::consts::FRAC_1_PI;
 use glam::DVec3;
 
 use super::mistakes::LightOfPaths;
-use crate::box_room::{BoxRoom, Face, Vertex, nearest, visible};
-use crate::hemisphere::Hemisphere;
+use crate::lambertian::hemisphere::Hemisphere;
+use crate::paths::room::{BoxRoom, Face, Vertex, nearest, visible};
 use crate::stream::Stream;
 
 /// What a light sample is weighed by.

@@ -16,9 +16,13 @@
 //!
 //! One's own estimator for question 2.1 is checked by `examples/check_mine.rs`.
 
+#[cfg(feature = "workbook")]
+pub mod figures;
 mod genz;
 mod integrand;
 pub mod mistakes;
+#[cfg(feature = "workbook")]
+pub(crate) mod questions;
 mod replicate;
 
 pub use genz::{Family, Genz};

@@ -15,8 +15,12 @@ use crate::float::Extended;
 use crate::stream::Stream;
 
 mod bounces;
+#[cfg(feature = "workbook")]
+pub mod figures;
 mod light;
 pub mod mistakes;
+#[cfg(feature = "workbook")]
+pub(crate) mod questions;
 
 pub use bounces::{BounceCount, BouncesByInversion, BouncesBySimulation};
 pub use light::{LightModel, RoulettePaths, TruncatedPaths};

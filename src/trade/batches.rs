@@ -162,11 +162,11 @@ mod tests {
     use std::sync::atomic::Ordering::Relaxed;
 
     use super::*;
-    use crate::box_room::{BoxRoom, Scene};
     use crate::estimator::from_fn;
-    use crate::hemisphere::Hemisphere::{Cosine, Uniform};
     use crate::inversion::Exponential;
     use crate::lambertian::Lambertian;
+    use crate::lambertian::hemisphere::Hemisphere::{Cosine, Uniform};
+    use crate::paths::room::{BoxRoom, Scene};
     use crate::paths::{Bounces, FindLight, Paths};
     use crate::rectangle::{Integrand, Rectangle};
     use crate::roulette::LightModel;

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::Value;
 use crate::estimate::Estimate;
-use crate::figure::{Edition, Figure};
+use crate::plot::{Edition, Figure};
 use crate::run::{Cost, Outcome, Part, Shortfall};
 use crate::trade::Measured;
 

@@ -2,7 +2,7 @@
 
 use super::Answer;
 use crate::error::{Error, Result};
-use crate::figure::Figure;
+use crate::plot::Figure;
 
 /// What is known of an example beside the questions before it is run.
 pub(super) struct Beside {
@@ -67,22 +67,43 @@ pub struct Appendix {
     pub figures: Vec<Figure>,
 }
 
-/// A table of an [`Appendix`]; all cells are text.
+/// A table; all cells are text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Table {
     /// What it shows, in a line.
     pub caption: String,
     /// The columns' names; the first one names what a row is about.
-    pub columns: Vec<&'static str>,
+    pub columns: Vec<String>,
     /// As many cells a row as there are columns.
     pub rows: Vec<Vec<String>>,
 }
 
 impl Table {
+    /// One with a caption, names of columns, and rows.
+    pub fn new<C: Into<String>>(
+        caption: &str,
+        columns: impl IntoIterator<Item = C>,
+        rows: impl IntoIterator<Item = Vec<String>>,
+    ) -> Self {
+        Self {
+            caption: caption.into(),
+            columns: columns.into_iter().map(Into::into).collect(),
+            rows: rows.into_iter().collect(),
+        }
+    }
+
+    /// One JSON object a row, by the columns' names.
+    pub(crate) fn json(&self) -> String {
+        let object = |row: &Vec<String>| {
+            let cells = self.columns.iter().cloned().zip(row.iter().map(|cell| cell.clone().into()));
+            serde_json::Value::Object(cells.collect()).to_string()
+        };
+        self.rows.iter().map(object).collect::<Vec<_>>().join("\n")
+    }
+
     /// The table in lines of plain text, columns aligned.
     pub(crate) fn lines(&self) -> Vec<String> {
-        let heading = self.columns.iter().map(|name| (*name).to_owned()).collect();
-        let all: Vec<&Vec<String>> = std::iter::once(&heading).chain(&self.rows).collect();
+        let all: Vec<&Vec<String>> = std::iter::once(&self.columns).chain(&self.rows).collect();
         let width = |column: usize| {
             all.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
         };
@@ -103,7 +124,7 @@ mod tests {
     #[test]
     fn columns_are_aligned() {
         let rows = vec![vec!["ln".into(), "1".into()], vec!["−exp_m1".into(), "22".into()]];
-        let table = Table { caption: String::new(), columns: vec!["form", "ulps"], rows };
+        let table = Table::new("", ["form", "ulps"], rows);
         assert_eq!(table.lines(), ["form     ulps", "ln       1", "−exp_m1  22"]);
     }
 }

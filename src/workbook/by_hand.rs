@@ -41,12 +41,12 @@ pub struct Slip {
 }
 
 /// One that serves to judge answers.
-pub(super) const fn slip(id: &'static str, answer: &'static str, words: &'static str) -> Slip {
+pub(crate) const fn slip(id: &'static str, answer: &'static str, words: &'static str) -> Slip {
     Slip { id, answer, words, classic: false }
 }
 
 /// One that is shown with the solution, too.
-pub(super) const fn classic(id: &'static str, answer: &'static str, words: &'static str) -> Slip {
+pub(crate) const fn classic(id: &'static str, answer: &'static str, words: &'static str) -> Slip {
     Slip { id, answer, words, classic: true }
 }
 

@@ -21,16 +21,12 @@ mod answer;
 mod appendix;
 mod by_hand;
 mod check;
+pub mod extremes;
 mod grammar;
 mod options;
 mod page;
 mod print;
 mod progress;
-mod section1;
-mod section2;
-mod section3;
-mod section4;
-mod section5;
 mod shards;
 mod sheet;
 mod stated;
@@ -46,18 +42,20 @@ use std::time::Duration;
 pub use answer::{Answer, Kind};
 pub use appendix::{Appendix, Table};
 pub use by_hand::{Judgement, Number, Slip, judge_answer, judge_answer_at};
+pub(crate) use by_hand::{classic, slip};
 #[cfg(feature = "notebook")]
 pub(crate) use check::told_once;
-pub use check::{check_mine, exercise, exercises};
+pub use check::{check_mine, exercise, exercises, mistakes};
 pub use options::Options;
 pub use sheet::{Row, Sheet};
 pub use stated::{Letter, Stated};
 pub use value::Value;
 
 use crate::error::{Error, Result};
-use crate::figure::{Edition, write_whole};
 use crate::numbers::parseable;
+use crate::plot::{Edition, write_whole};
 use crate::run::Budget;
+use crate::{inversion, lambertian, paths, rectangle, roulette};
 use appendix::Beside;
 use options::{Asked, Request};
 use sheet::Voice;
@@ -123,11 +121,11 @@ pub struct Parameter {
 /// All questions, in the worksheet's order.
 pub fn questions() -> impl Iterator<Item = &'static Question> {
     let sections = [
-        section1::QUESTIONS,
-        section2::QUESTIONS,
-        section3::QUESTIONS,
-        section4::QUESTIONS,
-        section5::QUESTIONS,
+        inversion::questions::QUESTIONS,
+        rectangle::questions::QUESTIONS,
+        lambertian::questions::QUESTIONS,
+        paths::questions::QUESTIONS,
+        roulette::questions::QUESTIONS,
     ];
     sections.into_iter().flatten()
 }

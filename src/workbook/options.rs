@@ -13,11 +13,11 @@ use super::appendix::Beside;
 use super::progress::watched;
 use super::shards::Shards;
 use super::{Answer, Parameter, Question, Value, print};
-use crate::box_room::Scene;
 use crate::error::{Error, Result};
 use crate::estimator::Estimator;
-use crate::figure::Edition;
 use crate::numbers::parseable;
+use crate::paths::room::Scene;
+use crate::plot::Edition;
 use crate::run::{Budget, Outcome, Run};
 
 /// The options of an example.

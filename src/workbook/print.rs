@@ -11,8 +11,8 @@ use super::sheet::Voice;
 use super::terminal::{command_lines, folded, labelled, stacked, width};
 use super::{Answer, Appendix, Kind, Options, Question, Stated, shown};
 use crate::error::{Error, Result};
-use crate::figure::Edition;
-use crate::numbers::{plus_minus, rounded, shortened};
+use crate::numbers::{plus_minus, rounded, shortened, std_errors};
+use crate::plot::Edition;
 use crate::run::Part;
 
 /// Prints the question, before anything is known of its rows.
@@ -282,7 +282,7 @@ fn solution(answer: &Answer, options: &Options) -> String {
             line += " (95 %)";
         }
         if let Some(z) = answer.z().filter(|z| !answer.too_few_draws() || z.is_finite()) {
-            line += &format!("   z = {}", z_shown(z));
+            line += &format!("   z = {}", std_errors(z));
         }
         if 17 + line.chars().count() + 3 + verdict.chars().count() < width {
             line += &format!("   {verdict}");
@@ -309,12 +309,6 @@ fn solution(answer: &Answer, options: &Options) -> String {
         text += &labelled("        ", &sentence, width);
     }
     text
-}
-
-/// Two digits after the point, as long as these mean something.
-fn z_shown(z: f64) -> String {
-    let places = if z.abs() < 100.0 { 2 } else { 0 };
-    format!("{z:.places$}").replace('-', "−")
 }
 
 fn cost(answer: &Answer) -> String {

@@ -4,11 +4,11 @@ use std::cell::{Cell, RefCell};
 
 use super::answer::Words;
 use super::{Answer, AnswerFn, Options, Question, Value, print};
-use crate::box_room::Scene;
 use crate::error::Result;
 use crate::estimator::Estimator;
-use crate::figure::{Edition, Figure};
 use crate::numbers::rounded;
+use crate::paths::room::Scene;
+use crate::plot::{Edition, Figure};
 use crate::stream::{Stream, mix};
 
 /// A question's sheet. It knows the question, its parameters, the seed and the number of draws; an example

@@ -102,15 +102,9 @@ pub(super) fn stacked(table: &Table, width: usize) -> Vec<String> {
         if !lines.is_empty() {
             lines.push(String::new());
         }
-        let part = Table {
-            caption: String::new(),
-            columns: group.iter().filter_map(|column| table.columns.get(*column).copied()).collect(),
-            rows: table
-                .rows
-                .iter()
-                .map(|row| group.iter().map(|column| cell(row, *column)).collect())
-                .collect(),
-        };
+        let columns = group.iter().filter_map(|column| table.columns.get(*column).cloned());
+        let cells = |row: &Vec<String>| group.iter().map(|column| cell(row, *column)).collect();
+        let part = Table::new("", columns, table.rows.iter().map(cells));
         lines.extend(part.lines());
     }
     for row in &table.rows {
@@ -153,8 +147,7 @@ mod tests {
             vec!["one".into(), "1".into(), "2".into(), String::new()],
             vec!["three".into(), "10".into(), "20".into(), "a long remark of its own".into()],
         ];
-        let table =
-            Table { caption: String::new(), columns: vec!["name", "first", "second", "remark"], rows };
+        let table = Table::new("", ["name", "first", "second", "remark"], rows);
         let narrow = [
             "name   first",
             "one    1",

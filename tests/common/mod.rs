@@ -1,6 +1,8 @@
 //! What all tests share: seeds, proptest's settings, a furnace and a generator that is stuck.
 #![allow(dead_code)] // each test takes what it needs
 
+use unbiased::lambertian::hemisphere::{Direction, Hemisphere};
+
 /// Fixed by default; `UNBIASED_SEED=n` gives the whole suite fresh ones.
 pub fn seed(n: u64) -> u64 {
     let fresh: u64 = std::env::var("UNBIASED_SEED").ok().and_then(|s| s.parse().ok()).unwrap_or(0);
@@ -28,8 +30,8 @@ pub fn config(cases: u32) -> proptest::test_runner::Config {
 }
 
 /// A room without a light in which every face emits 1 and reflects so much.
-pub fn furnace(albedo: f64) -> unbiased::box_room::Scene {
-    unbiased::box_room::Scene {
+pub fn furnace(albedo: f64) -> unbiased::paths::room::Scene {
+    unbiased::paths::room::Scene {
         wall_albedo: albedo,
         cube_albedo: albedo,
         light_half_width: 0.0,
@@ -61,4 +63,16 @@ impl rand::TryRng for Stuck {
         bytes.fill(self.0 as u8);
         Ok(())
     }
+}
+
+/// Compares drawn directions with the density claimed for them.
+pub fn directions(
+    sampler: &impl rand::distr::Distribution<Direction>,
+    claimed: Hemisphere,
+    deviation: f64,
+    alpha: f64,
+    seed: u64,
+) -> unbiased::Result<unbiased::check::Agreement> {
+    let unwarp = |w: &Direction| [claimed.cdf_of_cos_theta(w.cos_theta()), w.phi() / std::f64::consts::TAU];
+    unbiased::check::points(sampler, unwarp, deviation, alpha, seed)
 }

@@ -118,22 +118,11 @@ impl fmt::Display for Report {
             };
             vec![row.student.clone(), row.question.clone(), verdict, mistake, ratio]
         });
-        let table = Table {
-            caption: String::new(),
-            columns: vec!["student", "question", "verdict", "mistake", "ratio"],
-            rows: rows.collect(),
-        };
-        let summary = Table {
-            caption: String::new(),
-            columns: vec!["students", "question", "mistake", ""],
-            rows: self
-                .summary()
-                .into_iter()
-                .map(|(question, id, name, count)| {
-                    vec![count.to_string(), question.into(), id.into(), name.into()]
-                })
-                .collect(),
-        };
+        let table = Table::new("", ["student", "question", "verdict", "mistake", "ratio"], rows);
+        let counted = self.summary().into_iter().map(|(question, id, name, count)| {
+            vec![count.to_string(), question.into(), id.into(), name.into()]
+        });
+        let summary = Table::new("", ["students", "question", "mistake", ""], counted);
         let count = |verdict| self.rows.iter().filter(|row| row.verdict == verdict).count();
         writeln!(f, "{}\n", cut(&table))?;
         if !summary.rows.is_empty() {

@@ -3,6 +3,7 @@
 
 mod class;
 mod draws;
+mod mistakes;
 mod programs;
 mod wish;
 
@@ -16,7 +17,7 @@ use serde_json::{Value, json};
 
 use super::by_hand::{self, Judgement, Slip};
 use super::progress::watched;
-use super::terminal::{folded, width};
+use super::terminal::{folded, stacked, width};
 use super::{Options, ended, print};
 use crate::check::{
     self, Attempt, Candidate, Diagnosis, Exercise, Finding, Measurement, Mistake, Probe, Problem,
@@ -26,6 +27,7 @@ use crate::numbers::shortened;
 use crate::run::{Budget, Run, Shortfall};
 use crate::{inversion, lambertian, paths, rectangle, roulette};
 use draws::Source;
+pub use mistakes::mistakes;
 use wish::{Deed, HELP, Wish};
 
 /// All exercises, in the order of the worksheet.
@@ -110,6 +112,12 @@ impl Wish {
                 let exercise = exercise(&self.question)?;
                 let text = if self.json { programs::probes_json } else { programs::probes };
                 (text(exercise, &self.question), Verdict::Right)
+            }
+            Deed::Mistakes => {
+                let table = mistakes(exercise(&self.question)?);
+                let rows = stacked(&table, width()).join("\n");
+                let plain = || format!("{}\n\n{rows}", folded(&table.caption, width()));
+                (if self.json { table.json() } else { plain() }, Verdict::Right)
             }
             Deed::Template(language) => {
                 let exercise = exercise(&self.question)?;

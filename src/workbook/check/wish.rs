@@ -14,6 +14,7 @@ pub(super) enum Deed {
     Mine,
     Help,
     Probes,
+    Mistakes,
     Template(Language),
     Answer(String),
     Draws(Vec<Source>),
@@ -69,6 +70,7 @@ impl Wish {
                 "csv" => wish.csv = true,
                 "exit-code" => wish.exit_code = true,
                 "probes" => deeds.push(("--probes", Deed::Probes)),
+                "mistakes" => deeds.push(("--mistakes", Deed::Mistakes)),
                 "template" => {
                     let language = Language::read(&options::text(&mut line, "--template")?)?;
                     deeds.push(("--template", Deed::Template(language)));
@@ -185,6 +187,7 @@ Options
     --albedo X, …        the question's own parameters, as in its example
     --variant NAME       or all of those that the variant of this name has
     --probes             describe the question's probes, for people and programs
+    --mistakes           what each classic mistake does to each probe: its mean over the truth
     --template LANG      a program to begin with: python or cpp
     --draws-from FILE    judge these draws (- for standard input), one a line, or a probe's number
                          and a draw a line; or several files: 1=a.txt 2=b.txt

@@ -3,12 +3,14 @@
 
 use maud::{Markup, html};
 
+use super::super::check::{exercise, mistakes};
 use super::super::{Answer, Options, Question, print};
 use super::text::{formula, grouped, prose};
-use super::{narrow, shown};
+use super::{aligned, narrow, shown};
+use crate::check::Exercise;
 use crate::error::Result;
-use crate::figure::Edition;
-use crate::numbers::shortened;
+use crate::numbers::{shortened, std_errors};
+use crate::plot::Edition;
 
 /// What the marks mean.
 pub(super) fn legend(options: &Options) -> Markup {
@@ -65,10 +67,17 @@ pub(super) fn article(question: &'static Question, answers: &[Answer], options: 
                     @if let Some(sentence) = answer.sentence() { p { (prose(sentence)) } }
                 }
                 div.figures { @for figure in others { (shown(figure)) } }
+                @if let Some(exercise) = asked_last(question) { (aligned(&mistakes(exercise))) }
                 p.command { code { (command) } @if let Some(remark) = remark { " " (remark) } }
             }
         }
     })
+}
+
+/// The exercise whose last question this is.
+fn asked_last(question: &Question) -> Option<&'static Exercise> {
+    let exercise = exercise(question.id).ok()?;
+    exercise.questions().last().filter(|last| *last == question.id).map(|_| exercise)
 }
 
 /// Whether it is a row of numbers.
@@ -144,7 +153,7 @@ fn table(question: &Question, rows: &[&Answer], options: &Options) -> Markup {
                     @else if let Some(value) = row.found() { (shortened(value)) }
                 }
                 td.number data-name="z" {
-                    @if let Some(z) = row.z().filter(|_| !row.too_few_draws()) { (of_z(z)) }
+                    @if let Some(z) = row.z().filter(|_| !row.too_few_draws()) { (std_errors(z)) }
                 }
                 td.number data-name="draws" {
                     @if let Some(estimate) = row.estimate() { (grouped(estimate.draws())) }
@@ -155,24 +164,9 @@ fn table(question: &Question, rows: &[&Answer], options: &Options) -> Markup {
     }
 }
 
-/// A number of standard errors, to two places where they say anything.
-fn of_z(z: f64) -> String {
-    match z.abs() {
-        far if far.is_infinite() => "beyond all error".into(),
-        far if far >= 100.0 => format!("{z:.0}").replace('-', "−"),
-        _ => format!("{z:.2}").replace('-', "−"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn far_off_is_far_off() {
-        let shown = [-0.004, 3.146, -793.23, f64::INFINITY].map(of_z);
-        assert_eq!(shown, ["−0.00", "3.15", "−793", "beyond all error"]);
-    }
 
     #[test]
     fn what_is_folded_away_is_counted() {

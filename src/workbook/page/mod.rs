@@ -9,7 +9,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::{Answer, Appendix, Options, Question};
 use crate::error::Result;
-use crate::figure::Figure;
+use crate::plot::Figure;
 use text::prose;
 
 /// The questions with their answers, in order.

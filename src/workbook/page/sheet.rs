@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::super::{Answer, Options, Question, shown};
 use super::text::prose;
 use crate::error::Result;
-use crate::figure::Edition;
+use crate::plot::Edition;
 
 /// How many ruled lines an answer by hand takes; none where all of it is drawn.
 fn lines(id: &str) -> usize {

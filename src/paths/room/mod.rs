@@ -28,7 +28,7 @@ pub use ray::{nearest_hit, visible};
 /// The numbers of the scene, unchecked; [`Default`] is the worksheet's.
 ///
 /// ```
-/// use unbiased::box_room::{BoxRoom, Scene};
+/// use unbiased::paths::room::{BoxRoom, Scene};
 ///
 /// let dark_walls = BoxRoom::new(Scene { wall_albedo: 0.1, ..Scene::default() })?;
 /// assert_eq!(dark_walls.scene().cube_albedo, 0.8);
@@ -66,7 +66,7 @@ impl Default for Scene {
 /// A scene that was found sound.
 ///
 /// ```
-/// use unbiased::box_room::{BoxRoom, Scene};
+/// use unbiased::paths::room::{BoxRoom, Scene};
 ///
 /// let room = BoxRoom::new(Scene::default())?;
 /// assert!((room.direct(&room.point()) - 0.2728543591976926).abs() < 1e-15);
@@ -124,7 +124,7 @@ impl BoxRoom {
     /// Whether a point belongs to the light, whose edge does.
     ///
     /// ```
-    /// use unbiased::box_room::{BoxRoom, Scene, Vertex};
+    /// use unbiased::paths::room::{BoxRoom, Scene, Vertex};
     ///
     /// let room = BoxRoom::new(Scene::default())?;
     /// let [light, ceiling] = [Vertex::at([0.5, 0.0, 4.0])?, Vertex::at([0.6, 0.0, 4.0])?];
@@ -158,7 +158,7 @@ impl BoxRoom {
     /// The light's four corners, as [`form_factor`] takes them.
     ///
     /// ```
-    /// use unbiased::box_room::{BoxRoom, Scene, form_factor};
+    /// use unbiased::paths::room::{BoxRoom, Scene, form_factor};
     ///
     /// let room = BoxRoom::new(Scene::default())?;
     /// let p = room.point();

@@ -27,7 +27,7 @@ use crate::float::two_sum;
 ///
 /// ```
 /// use glam::DVec3;
-/// use unbiased::box_room::form_factor;
+/// use unbiased::paths::room::form_factor;
 ///
 /// // a square of side 2a at distance a: F = 4/(π√2) · atan(1/√2)
 /// let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| DVec3::new(x, y, 1.0));

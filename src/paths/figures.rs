@@ -1,26 +1,27 @@
 //! Figures of section 4 with numbers: convergence, occlusion, bounces, and what the ways of sampling cost.
 
+pub use super::side_view::paths_drawn;
+
 use rand::distr::Distribution;
 
-use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
-use super::{Edition, Figure};
-use crate::box_room::{BoxRoom, Vertex, exact};
 use crate::error::Result;
 use crate::estimate::Estimate;
 use crate::estimator::{Estimator, from_fn};
-use crate::hemisphere::Hemisphere::{Cosine, Uniform};
+use crate::lambertian::hemisphere::Hemisphere::{Cosine, Uniform};
 use crate::numbers::typeset;
+use crate::paths::room::{BoxRoom, Vertex, exact};
 use crate::paths::{Bounces, FindLight, Paths, reflected};
+use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side, Width};
 use crate::run::{Budget, Run, estimate};
 use crate::stream::Stream;
 
 /// 4.3: running means of three estimators of the part of two bounces, with the exact value where it is known.
 ///
 /// ```
-/// use unbiased::box_room::{BoxRoom, Scene};
+/// use unbiased::paths::room::{BoxRoom, Scene};
 /// use unbiased::figure;
 ///
-/// let figure = figure::two_bounces_converging(&BoxRoom::new(Scene::default())?, 1)?;
+/// let figure = paths::figures::two_bounces_converging(&BoxRoom::new(Scene::default())?, 1)?;
 /// assert_eq!(figure.name(), "4_3_convergence");
 /// # Ok::<(), unbiased::Error>(())
 /// ```
@@ -101,7 +102,7 @@ fn running_means(estimator: &dyn Estimator, last: u64, seed: u64) -> Vec<[f64; 2
 /// 4.3: what becomes of an estimate when occluded directions are left out of n: the light stands where cos θ > 0.8, and something dark fills the directions below cos θ = c.
 ///
 /// ```
-/// let figure = unbiased::figure::occluded_fraction(10_000, 1)?;
+/// let figure = unbiased::paths::figures::occluded_fraction(10_000, 1)?;
 /// assert_eq!(figure.title(), "An occluded direction counts: it adds 0 to the sum and 1 to n");
 /// # Ok::<(), unbiased::Error>(())
 /// ```
@@ -165,11 +166,11 @@ fn find_light(room: &BoxRoom) -> Result<FindLight> {
 /// 4.3: the light by the number of bounces, exact where it is known, and else from ten million paths each.
 ///
 /// ```no_run
-/// use unbiased::box_room::{BoxRoom, Scene};
+/// use unbiased::paths::room::{BoxRoom, Scene};
 /// use unbiased::figure;
 ///
 /// // takes some seconds
-/// let figure = figure::radiance_by_bounces(&BoxRoom::new(Scene::default())?, 1)?;
+/// let figure = paths::figures::radiance_by_bounces(&BoxRoom::new(Scene::default())?, 1)?;
 /// assert_eq!(figure.title(), "Each bounce adds less");
 /// # Ok::<(), unbiased::Error>(())
 /// ```
@@ -323,11 +324,11 @@ fn reference(paths: &Paths, seed: u64) -> Result<[f64; 2]> {
 /// Ways whose variance may be infinite, [`Paths::caution`], are left out; and so is all light where an albedo is too large for absorption to end a path.
 ///
 /// ```no_run
-/// use unbiased::box_room::{BoxRoom, Scene};
+/// use unbiased::paths::room::{BoxRoom, Scene};
 /// use unbiased::figure;
 ///
 /// // takes some seconds
-/// let figures = figure::path_errors(&BoxRoom::new(Scene::default())?, 1)?;
+/// let figures = paths::figures::path_errors(&BoxRoom::new(Scene::default())?, 1)?;
 /// assert_eq!(figures[0].name(), "4_3_error");
 /// assert_eq!(figures[1].name(), "4_3_error_seconds");
 /// # Ok::<(), unbiased::Error>(())

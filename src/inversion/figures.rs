@@ -2,11 +2,10 @@
 
 use rand::distr::Distribution;
 
-use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
-use super::{Edition, Figure};
 use crate::error::{Error, Result};
 use crate::inversion::Exponential;
 use crate::numbers::{equals, typeset};
+use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side, Width};
 use crate::stream::Stream;
 
 /// Rates at which densities and lengths can be drawn.

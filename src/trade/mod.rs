@@ -11,6 +11,8 @@
 
 mod batches;
 mod comparison;
+#[cfg(feature = "workbook")]
+pub mod figures;
 mod measured;
 mod shown;
 

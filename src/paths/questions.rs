@@ -1,8 +1,8 @@
 //! The questions of section 4, paths in the box room.
 
-use super::{Letter, Options, Parameter, Question, Value, Wrong};
-use crate::box_room::{BoxRoom, Scene};
 use crate::error::Result;
+use crate::paths::room::{BoxRoom, Scene};
+use crate::workbook::{Letter, Options, Parameter, Question, Value, Wrong};
 
 /// The room, if all of its numbers are in their domains.
 fn room(options: &Options) -> Result<Scene> {
@@ -56,7 +56,7 @@ const POINT: Parameter = Parameter {
     letter: None,
 };
 
-pub(super) const QUESTIONS: &[Question] = &[
+pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "4.1",
         title: "Paths of two bounces",

@@ -1,8 +1,8 @@
 //! The questions of section 5, Russian roulette.
 
-use super::by_hand::{classic, slip};
-use super::{Letter, Number, Parameter, Question, Value, Wrong};
 use crate::roulette::{LightModel, Roulette};
+use crate::workbook::{Letter, Number, Parameter, Question, Value, Wrong};
+use crate::workbook::{classic, slip};
 
 const ALBEDO: Parameter = Parameter {
     name: "albedo",
@@ -53,7 +53,7 @@ const EXPECTED_BOUNCES: Number = Number {
     ],
 };
 
-pub(super) const QUESTIONS: &[Question] = &[
+pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "5.1",
         title: "Bounces at p_rr = «p_rr»",
@@ -155,7 +155,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         formula: "E[N] = p_rr/(1 − p_rr) grows with p_rr, without bound; Var N = p_rr/(1 − p_rr)²",
         latex: &[
             r"E[N] = \frac{p_{rr}}{1-p_{rr}}, \qquad \operatorname{Var} N = \frac{p_{rr}}{(1-p_{rr})^2}",
-            r"\operatorname{Var} = \frac{A(1-q)+Bq}{q-\rho^2}\ (q > \rho^2), \quad \text{cost} = \frac1{1-q}, \quad A = \frac{v^2\rho^2}{(1-\rho)^2},\ B = v(1-v)",
+            r"\operatorname{Var}\hat L = \frac{A(1-q)+Bq}{q-\rho^2}\ (q > \rho^2), \quad \text{cost} = \frac1{1-q}, \quad A = \frac{v^2\rho^2}{(1-\rho)^2},\ B = v(1-v)",
         ],
         answer: "It grows, slowly at first and without bound as p_rr → 1, and its standard deviation is larger than it everywhere. What that buys is seen in a model: at each vertex the path \
                  sees the light with probability v = «v», a fraction ρ = «ρ» is reflected, and q is p_rr. A larger q lowers the variance and raises the cost, and their product is least at q*, between ρ and 1. Stopping after a fixed \

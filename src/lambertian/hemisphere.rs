@@ -16,7 +16,7 @@ use crate::fast::sin_cos_of_turns;
 /// point below the horizon, into the surface.
 ///
 /// ```
-/// use unbiased::hemisphere::Direction;
+/// use unbiased::lambertian::hemisphere::Direction;
 ///
 /// let direction = Direction::new(0.0, 3.0, 4.0)?;
 /// assert_eq!((direction.cos_theta(), direction.sin_theta()), (0.8, 0.6));
@@ -120,7 +120,7 @@ impl From<Direction> for DVec3 {
 ///
 /// ```
 /// use rand::distr::Distribution;
-/// use unbiased::{Density, Stream, hemisphere::Hemisphere};
+/// use unbiased::{Density, Stream, lambertian::hemisphere::Hemisphere};
 ///
 /// let direction = Hemisphere::Cosine.sample(&mut Stream::new(1, 0));
 /// assert_eq!(Hemisphere::Cosine.pdf(&direction), direction.cos_theta() * std::f64::consts::FRAC_1_PI);
@@ -143,7 +143,7 @@ impl Hemisphere {
     /// If u or v is not in \[0, 1\].
     ///
     /// ```
-    /// use unbiased::hemisphere::Hemisphere;
+    /// use unbiased::lambertian::hemisphere::Hemisphere;
     ///
     /// let direction = Hemisphere::Cosine.direction_of(0.75, 0.5)?;
     /// assert_eq!(direction.cos_theta(), 0.5);

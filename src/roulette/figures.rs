@@ -1,10 +1,9 @@
 //! Figures of section 5.
 
-use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
-use super::{Edition, Figure};
 use crate::error::Result;
 use crate::estimator::Estimator;
 use crate::numbers::{equals, typeset};
+use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side, Width};
 use crate::roulette::{LightModel, Roulette};
 use crate::run::{Budget, estimate};
 use crate::stream::Stream;

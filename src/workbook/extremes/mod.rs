@@ -1,11 +1,10 @@
 //! Figures of numerical stability: where the obvious code loses its digits.
 
-use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
-use super::{Edition, Figure};
 use crate::error::Result;
 use crate::estimate::Estimate;
 use crate::fast;
 use crate::inversion::Exponential;
+use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side, Width};
 use crate::stream::Stream;
 
 /// u, −ln(1 − u) and 1 − e^(−u) to 32 digits, and the nearest u on the grid of 2⁻⁵³ with −ln(1 − u) there, by another program; see `extremes.py`.
@@ -17,7 +16,7 @@ type Form<'a> = (&'a str, Ink, Marker, &'a dyn Fn(f64) -> f64);
 /// The errors of three ways to write each of −ln(1 − u) and 1 − e^(−x), in units of the last place, against the argument.
 ///
 /// ```
-/// let figure = unbiased::figure::errors_in_ulps()?;
+/// let figure = unbiased::workbook::extremes::errors_in_ulps()?;
 /// assert!(figure.csv().contains("inverse_cdf, by ln_1p"));
 /// # Ok::<(), unbiased::Error>(())
 /// ```
@@ -100,7 +99,7 @@ fn errors(form: impl Fn(f64) -> f64, of: impl Fn([f64; 8]) -> [f64; 3]) -> Vec<[
 /// How far the running mean of 10¹⁰ + U is from the exact mean of the same draws, relative to it: summed in f32, in f64, and as [`Estimate`] sums.
 ///
 /// ```
-/// let figure = unbiased::figure::running_mean_errors(1)?;
+/// let figure = unbiased::workbook::extremes::running_mean_errors(1)?;
 /// assert_eq!(figure.title(), "A sum that rounds drifts away from the mean");
 /// # Ok::<(), unbiased::Error>(())
 /// ```

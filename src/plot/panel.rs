@@ -103,13 +103,6 @@ pub(crate) enum Item {
         width: f64,
         points: Vec<[f64; 2]>,
     },
-    /// a row of a matrix: cells one unit wide and high about (x, `row`), given as x, value and its shade from −1 to 1
-    Cells {
-        series: String,
-        row: f64,
-        points: Vec<[f64; 3]>,
-        texts: Vec<String>,
-    },
     /// a marker that says to which points the text beside it belongs
     Key {
         ink: Ink,
@@ -357,18 +350,6 @@ impl Panel {
         self.add(Item::Bars { series: series.into(), ink, width, points })
     }
 
-    /// A row of a matrix: cells one unit wide and high about (x, `row`), given as (x, value, shade) and the text on each. A shade of −1 is
-    /// blue, 0 white, 1 vermilion.
-    pub fn cells(
-        &mut self,
-        series: &str,
-        row: f64,
-        cells: impl IntoIterator<Item = ([f64; 3], String)>,
-    ) -> &mut Self {
-        let (points, texts) = cells.into_iter().unzip();
-        self.add(Item::Cells { series: series.into(), row, points, texts })
-    }
-
     /// A shaded region between two values of x.
     pub fn shade(&mut self, from: f64, to: f64) -> &mut Self {
         self.add(Item::Shade { from, to })
@@ -465,10 +446,6 @@ impl Plot {
                     Item::ErrorBars { series, points, .. } => {
                         (series, points.iter().map(|point| point.map(Some)).collect())
                     }
-                    Item::Cells { series, points, .. } => (
-                        series,
-                        points.iter().map(|&[x, value, _]| [Some(x), Some(value), None, None]).collect(),
-                    ),
                     Item::Key { .. } | Item::Shade { .. } | Item::Arrow { .. } | Item::Text { .. } => {
                         continue;
                     }

@@ -1,8 +1,8 @@
 //! The questions of section 1, the inversion method.
 
-use super::by_hand::{classic, slip};
-use super::{Letter, Number, Parameter, Question, Slip, Value, Wrong};
 use crate::inversion::Exponential;
+use crate::workbook::{Letter, Number, Parameter, Question, Slip, Value, Wrong};
+use crate::workbook::{classic, slip};
 
 const RATE: Parameter = Parameter {
     name: "rate",
@@ -30,7 +30,7 @@ const CDF_READ: Slip = classic("cdf-read", "1 − e^(−λu)", "F read at x = u 
 const PDF_READ: Slip = classic("pdf-read", "λ e^(−λu)", "p read at x = u instead of F inverted");
 const U_ITSELF: Slip = slip("u", "u", "U itself");
 
-pub(super) const QUESTIONS: &[Question] = &[
+pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "1.1",
         title: "Sampling the exponential distribution",

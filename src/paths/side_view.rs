@@ -2,12 +2,11 @@
 
 use glam::DVec3;
 
-use super::labels::Labels;
-use super::plot::{Axis, Ink, Marker, Panel, Plot, Width};
-use super::{Edition, Figure};
-use crate::box_room::{BoxRoom, Face, Vertex};
 use crate::error::{Result, require_count};
+use crate::paths::room::{BoxRoom, Face, Vertex};
 use crate::paths::{Path, Paths};
+use crate::plot::Labels;
+use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Width};
 use crate::stream::Stream;
 
 /// What is shown, in metres.
@@ -37,17 +36,17 @@ const CANDIDATES: usize = 300;
 /// The room is seen from the south, or from the east where p would be before the cube or behind it.
 ///
 /// ```
-/// use unbiased::box_room::{BoxRoom, Scene};
+/// use unbiased::paths::room::{BoxRoom, Scene};
 /// use unbiased::figure;
-/// use unbiased::hemisphere::Hemisphere;
+/// use unbiased::lambertian::hemisphere::Hemisphere;
 /// use unbiased::paths::{Bounces, FindLight, Paths};
 ///
 /// let room = BoxRoom::new(Scene::default())?;
 /// let paths = |k| Paths::new(room, Bounces::Exactly(k), Hemisphere::Cosine, FindLight::BySampling);
-/// let [to_fill_in, solved] = figure::paths_drawn(&paths(2)?, 3, 1)?;
+/// let [to_fill_in, solved] = paths::figures::paths_drawn(&paths(2)?, 3, 1)?;
 /// assert_eq!([to_fill_in.name(), solved.name()], ["4_1_paths_student", "4_1_paths"]);
 /// assert_eq!(solved.title(), "Three sampled paths of two bounces");
-/// assert!(figure::paths_drawn(&paths(5)?, 3, 1).is_err());
+/// assert!(paths::figures::paths_drawn(&paths(5)?, 3, 1).is_err());
 /// # Ok::<(), unbiased::Error>(())
 /// ```
 ///

@@ -1,9 +1,9 @@
 //! The questions of section 3, the diffuse cube.
 
-use super::by_hand::{classic, slip};
-use super::{Letter, Number, Parameter, Question, Value, Wrong};
 use crate::error::require;
 use crate::lambertian::{CosinePower, Lambertian, RingLight};
+use crate::workbook::{Letter, Number, Parameter, Question, Value, Wrong};
+use crate::workbook::{classic, slip};
 
 const ALBEDO: Parameter = Parameter {
     name: "albedo",
@@ -40,7 +40,7 @@ const A: Parameter = Parameter {
     }),
 };
 
-pub(super) const QUESTIONS: &[Question] = &[
+pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "3.1",
         title: "What the cube emits",
@@ -255,7 +255,7 @@ pub(super) const QUESTIONS: &[Question] = &[
         hint: "What is the variance of f/p if p is exactly proportional to f? And where would the light have to come from for cos θ/π to be a poor choice?",
         formula: "under cos^a θ: Var uniform = 4ρ²(a+1)²/((2a+3)(a+2)²), Var cosine = ρ²a²/((a+1)(a+2)²)",
         latex: &[
-            r"\operatorname{Var}\frac{f(X)}{p(X)} = \int \frac{f^2}{p} - \Big(\int f\Big)^2",
+            r"\operatorname{Var}\frac{f(X)}{p(X)} = \int \frac{f^2}{p} - \left(\int f\right)^2",
             r"V_\text{uniform} = \frac{4\rho^2(a+1)^2}{(2a+3)(a+2)^2}, \qquad V_\text{cosine} = \frac{\rho^2a^2}{(a+1)(a+2)^2}",
         ],
         answer: "The rate 1/√n is the same; the constant is smaller when the density is close to the integrand's shape, and the integrand has a factor cos θ. The \

@@ -1,6 +1,6 @@
 //! Where labels go in a drawing: beside their points, off the lines and off each other.
 
-use super::plot::{Ink, Panel, Side};
+use super::panel::{Ink, Panel, Side};
 
 /// A rectangle around a middle, in the drawing's units.
 #[derive(Debug, Clone, Copy)]
@@ -57,7 +57,7 @@ pub(super) fn width(text: &str) -> f64 {
 }
 
 /// Labels of one drawing, placed one after the other where they are least in the way.
-pub(super) struct Labels {
+pub(crate) struct Labels {
     /// how many points of print a unit is
     scale: f64,
     bounds: Box2,
@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn labels_know_whether_they_are_in_the_way() {
-        let axis = || crate::figure::plot::Axis::linear("x", 0.0, 10.0);
+        let axis = || crate::plot::Axis::linear("x", 0.0, 10.0);
         let mut panel = Panel::new("", axis(), axis());
         let mut labels = Labels::new([0.0, 0.0], [10.0, 10.0], 10.0);
         labels.place(&mut panel, Ink::Black, [5.0, 5.0], "p");

@@ -9,7 +9,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontFamily, register_font};
 
 use super::labels::width;
-use super::plot::{Ink, Item, Marker, Panel, Plot, Side};
+use super::panel::{Ink, Item, Marker, Panel, Plot, Side};
 use crate::error::{Error, Result};
 
 /// Lattice units in a millimetre: ten for each CSS pixel of 1/96 inch.
@@ -24,17 +24,11 @@ const FAINT: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
 /// plotters has no dashes: a line's opacity, one of these, says which it gets once the SVG is written.
 const DASHES: [(f64, &str); 3] = [(0.991, "75 30"), (0.992, "90 30 15 30"), (0.993, "15 25")];
 
-/// The opacity that says of a text that it stands on a colour, where a white edge would be in the way.
-const ON_COLOUR: f64 = 0.994;
-
 /// Fonts with every sign that is drawn, in the order in which they are looked for.
 const FONTS: &str = "font-family=\"DejaVu Sans, Noto Sans, Noto Sans Math, STIX Two Math, sans-serif\"";
 
 /// A text's white edge.
 const EDGE: &str = " stroke=\"#FFFFFF\" stroke-width=\"24\" paint-order=\"stroke\"";
-
-/// The share of ink in a cell of shade ±1: black text on it still reads.
-const DEEPEST: f64 = 0.6;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
@@ -252,21 +246,6 @@ fn draw_item(item: &Item, frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
                 area.draw(&Rectangle::new(corners, colour(*ink).mix(0.45).filled()))?;
             }
         }
-        Item::Cells { row, points, texts, .. } => {
-            for (&[x, _, shade], text) in points.iter().zip(texts) {
-                let corners = [frame.at([x - 0.5, row - 0.5]), frame.at([x + 0.5, row + 0.5])];
-                let ink = if shade < 0.0 { Ink::Blue } else { Ink::Vermilion };
-                let fill = tint(ink, DEEPEST * shade.abs().min(1.0));
-                area.draw(&Rectangle::new(corners, fill.filled()))?;
-                area.draw(&Rectangle::new(corners, FAINT.stroke_width((0.4 * PT) as u32)))?;
-                let middle = frame.at([x, *row]);
-                area.draw(&Text::new(
-                    text.clone(),
-                    middle,
-                    font(8.0, &INK.mix(ON_COLOUR), HPos::Center, VPos::Center),
-                ))?;
-            }
-        }
         Item::Key { ink, marker, at } if frame.is_near(*at) => {
             draw_marker(frame.at(*at), *ink, *marker, area)?;
         }
@@ -340,13 +319,6 @@ fn colour(ink: Ink) -> RGBColor {
     }
 }
 
-/// A colour with this share of ink on white.
-fn tint(ink: Ink, share: f64) -> RGBColor {
-    let RGBColor(r, g, b) = colour(ink);
-    let mixed = |c: u8| (255.0 + share * (f64::from(c) - 255.0)).round() as u8;
-    RGBColor(mixed(r), mixed(g), mixed(b))
-}
-
 /// The colour for text, dark enough to read on white.
 fn dark(ink: Ink) -> RGBColor {
     let RGBColor(r, g, b) = colour(ink);
@@ -391,7 +363,6 @@ fn finish(plot: &Plot, name: &str, svg: &str) -> String {
         .replace(" \"/>", "\"/>")
         .replace("font-family=\"sans-serif\"", FONTS)
         .replace("<text ", &format!("<text{EDGE} "));
-    body = without_edges_on_colour(&body);
     for (opacity, pattern) in DASHES {
         body = body.replace(&format!("opacity=\"{opacity}\""), &format!("stroke-dasharray=\"{pattern}\""));
     }
@@ -403,15 +374,6 @@ fn finish(plot: &Plot, name: &str, svg: &str) -> String {
         escape(&plot.title),
         escape(&plot.description),
     )
-}
-
-/// Takes the white edge from texts of the opacity [`ON_COLOUR`].
-fn without_edges_on_colour(body: &str) -> String {
-    let mark = format!(" opacity=\"{ON_COLOUR}\"");
-    let lines = body.split_inclusive('\n').map(|line| {
-        if line.contains(&mark) { line.replace(EDGE, "").replace(&mark, "") } else { line.to_string() }
-    });
-    lines.collect()
 }
 
 fn escape(text: &str) -> String {

@@ -1,9 +1,9 @@
 //! The questions of section 2, unbiased estimators.
 
-use super::by_hand::{classic, slip};
-use super::{Letter, Number, Options, Parameter, Question, Value, Wrong};
 use crate::error::Result;
 use crate::rectangle::Rectangle;
+use crate::workbook::{Letter, Number, Options, Parameter, Question, Value, Wrong};
+use crate::workbook::{classic, slip};
 
 const fn end(name: &'static str, default: f64, help: &'static str, letter: Letter) -> Parameter {
     Parameter { name, default: Value::Number(default), help, letter: Some(letter) }
@@ -31,7 +31,7 @@ const Y_LOW: Letter =
 const Y_HIGH: Letter =
     Letter { names: &["y_high"], value: |options| ends(options).map(|[_, [_, high]]| high), generic: 3.0 };
 
-pub(super) const QUESTIONS: &[Question] = &[Question {
+pub(crate) const QUESTIONS: &[Question] = &[Question {
     id: "2.1",
     title: "A double integral from uniform random numbers",
     statement: "A source of random numbers hands out 2n of them, n uniform on [«x_low», «x_high»] and n on [«y_low», «y_high»], \

@@ -1,10 +1,9 @@
 //! Figures of section 2.
 
-use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
-use super::{Edition, Figure};
 use crate::error::Result;
 use crate::estimator::{Estimator, from_fn};
 use crate::numbers::typeset;
+use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side, Width};
 use crate::rectangle::{Integrand, Rectangle};
 use crate::run::{Budget, estimate};
 

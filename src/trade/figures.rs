@@ -1,9 +1,8 @@
 //! Speed against accuracy, drawn.
 
-use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
-use super::{Edition, Figure};
 use crate::error::Result;
 use crate::numbers::two_digits;
+use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side, Width};
 use crate::trade::{Comparison, Measured, Nature};
 
 /// An ink, which has a dash of its own, and a marker a rival: no two are alike in grey.
@@ -51,11 +50,11 @@ type Drawn<'a> = (&'a Measured, (Ink, Marker));
 /// let one = from_fn(|rng| rng.uniform().sqrt());
 /// let two = from_fn(|rng| 0.5 * (rng.uniform().sqrt() + rng.uniform().sqrt()));
 /// let found = Trade::new(1, 2.0 / 3.0)?.seconds_each(0.01)?.compare(&[Rival::new("one", one), Rival::new("two", two)])?;
-/// let figure = figure::trade("trade_mine", "One point or two", &found)?;
+/// let figure = trade::figures::trade("trade_mine", "One point or two", &found)?;
 /// assert!(figure.svg().starts_with("<svg"));
 /// # Ok::<(), unbiased::Error>(())
 /// ```
-pub fn trade(name: &'static str, title: &str, comparison: &Comparison) -> Result<Figure> {
+pub fn comparison(name: &'static str, title: &str, comparison: &Comparison) -> Result<Figure> {
     let ranked: Vec<&Measured> = comparison.remarked().into_iter().map(|(rival, ..)| rival).collect();
     let drawn: Vec<Drawn<'_>> = ranked.iter().copied().zip(STYLES).collect();
     let lines: Vec<Drawn<'_>> = drawn

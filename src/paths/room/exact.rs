@@ -17,7 +17,7 @@ impl BoxRoom {
     /// Lambert 1760).
     ///
     /// ```
-    /// use unbiased::box_room::{BoxRoom, Scene};
+    /// use unbiased::paths::room::{BoxRoom, Scene};
     ///
     /// // beside the cube, which hides a part of the light
     /// let room = BoxRoom::new(Scene { point: [0.7, 0.1, 0.0], ..Scene::default() })?;
@@ -40,7 +40,7 @@ impl BoxRoom {
     /// for light half-widths from 0.5 to 2, the whole ceiling.
     ///
     /// ```
-    /// use unbiased::box_room::{BoxRoom, Scene};
+    /// use unbiased::paths::room::{BoxRoom, Scene};
     ///
     /// let room = BoxRoom::new(Scene::default())?;
     /// assert!((room.two_bounces().unwrap() - 0.039903921548169116).abs() < 1e-13);

@@ -19,7 +19,7 @@ use super::face::{Face, Vertex};
 ///
 /// ```
 /// use glam::DVec3;
-/// use unbiased::box_room::{Face, Vertex, nearest_hit};
+/// use unbiased::paths::room::{Face, Vertex, nearest_hit};
 ///
 /// let p = Vertex::at([0.0, 0.0, 1.0])?;
 /// let hit = nearest_hit(&p, DVec3::new(1.0, 0.0, 1.0)).unwrap();
@@ -52,7 +52,7 @@ pub(crate) fn nearest(origin: DVec3, direction: DVec3) -> Vertex {
 ///
 /// ```
 /// use glam::DVec3;
-/// use unbiased::box_room::{Vertex, visible};
+/// use unbiased::paths::room::{Vertex, visible};
 ///
 /// let floor = Vertex::at([1.5, 0.0, 0.0])?;
 /// assert!(visible(&floor, DVec3::new(0.5, 0.0, 4.0)));

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::error::{Error, Result};
-use crate::hemisphere::Direction;
+use crate::lambertian::hemisphere::Direction;
 
 /// A face of the room, seen from inside, or of the cube, seen from outside. The light is a part of the ceiling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -60,7 +60,7 @@ impl Face {
     /// Whether it belongs to the cube.
     ///
     /// ```
-    /// use unbiased::box_room::Face;
+    /// use unbiased::paths::room::Face;
     ///
     /// let (cube, room): (Vec<Face>, Vec<Face>) = Face::ALL.into_iter().partition(|face| face.is_cube());
     /// assert_eq!((cube.len(), room.len()), (5, 6));
@@ -75,7 +75,7 @@ impl Face {
     ///
     /// ```
     /// use glam::DVec3;
-    /// use unbiased::box_room::Face;
+    /// use unbiased::paths::room::Face;
     ///
     /// assert_eq!((Face::CubeTop.normal(), Face::Ceiling.normal()), (DVec3::Z, DVec3::NEG_Z));
     /// let [low, high] = Face::CubeTop.bounds();
@@ -149,7 +149,7 @@ const BOUNDS: [[DVec3; 2]; 11] = {
 /// A point on a face: a vertex of a path.
 ///
 /// ```
-/// use unbiased::box_room::{Face, Vertex};
+/// use unbiased::paths::room::{Face, Vertex};
 ///
 /// let p = Vertex::at([0.0, 0.0, 1.0])?;
 /// assert_eq!(p.face(), Face::CubeTop);
@@ -169,7 +169,7 @@ impl Vertex {
     /// If no face is there, or only the part of the floor that the cube stands on.
     ///
     /// ```
-    /// use unbiased::box_room::{Face, Vertex};
+    /// use unbiased::paths::room::{Face, Vertex};
     ///
     /// assert_eq!(Vertex::at([2.0, 2.0, 3.0])?.face(), Face::East);
     /// let error = Vertex::at([0.0, 0.25, 0.0]).unwrap_err();
@@ -218,8 +218,8 @@ impl Vertex {
     ///
     /// ```
     /// use glam::DVec3;
-    /// use unbiased::box_room::Vertex;
-    /// use unbiased::hemisphere::Direction;
+    /// use unbiased::paths::room::Vertex;
+    /// use unbiased::lambertian::hemisphere::Direction;
     ///
     /// let east = Vertex::at([2.0, 0.3, 3.0])?;
     /// assert_eq!(east.to_room(&Direction::new(0.0, 0.0, 1.0)?), DVec3::NEG_X);

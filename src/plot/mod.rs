@@ -4,28 +4,12 @@
 //! same bytes on every run. Where a question asks the student to mark or draw something there are two
 //! editions: [`Edition::Student`] has the same canvas and axes with nothing of the answer on it.
 
-mod check;
-mod extremes;
-mod inversion;
 mod labels;
-mod lambertian;
-mod paths;
-mod plot;
-mod rectangle;
+mod panel;
 mod render;
-mod room;
-mod roulette;
-mod trade;
 
-pub use check::{mistakes, wealth};
-pub use extremes::{errors_in_ulps, running_mean_errors};
-pub use inversion::{empirical_cdf, exponential, tails};
-pub use lambertian::{directions, integrand, variance_against_exponent, variance_against_ring};
-pub use paths::{occluded_fraction, path_errors, radiance_by_bounces, two_bounces_converging};
-pub use rectangle::{running_means, sampling_errors};
-pub use room::paths_drawn;
-pub use roulette::{bounces, mean_bounces, roulette_trade, truncation};
-pub use trade::trade;
+pub(crate) use labels::Labels;
+pub(crate) use panel::{Axis, Ink, Marker, Panel, Plot, Side, Width};
 
 use std::fmt::Write as _;
 use std::fs;
@@ -229,7 +213,7 @@ mod tests {
     #[test]
     fn writers_of_one_file_do_not_disturb_each_other() {
         let folder = std::env::temp_dir().join(format!("unbiased-writers-{}", std::process::id()));
-        let figure = integrand().unwrap();
+        let figure = crate::lambertian::figures::integrand().unwrap();
         let write = || (0..50).try_for_each(|_| figure.save(&folder).map(|_| ()));
         std::thread::scope(|scope| {
             let writers: Vec<_> = (0..8).map(|_| scope.spawn(write)).collect();

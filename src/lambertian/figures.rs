@@ -1,14 +1,16 @@
 //! Figures of section 3.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, LN_10, TAU};
 
 use rand::distr::Distribution;
 
-use super::plot::{Axis, Ink, Marker, Panel, Plot, Side, Width};
-use super::{Edition, Figure};
+use crate::check::{Look, Unbiased};
 use crate::error::Result;
-use crate::hemisphere::Hemisphere::{self, Cosine, Uniform};
+use crate::estimator::from_fn;
+use crate::lambertian::hemisphere::Hemisphere::{self, Cosine, Uniform};
 use crate::lambertian::{CosinePower, Lambertian, Light, RingLight};
+use crate::numbers::power_of_ten;
+use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side, Width};
 use crate::run::{Budget, estimate};
 use crate::stream::Stream;
 
@@ -237,4 +239,127 @@ pub fn variance_against_ring(draws: u64, seed: u64) -> Result<Figure> {
         panels: vec![panel],
     }
     .draw()
+}
+
+/// The relative difference taken for none: half of the smaller bias shown.
+const DELTA: f64 = 5e-3;
+
+/// The wealth of those who bet against an estimator's mean, while it is drawn from: a right estimator of the light reflected under L = cos θ,
+/// one that is 1 % off, and the classic mistake, uniform directions with the cosine weight. Beside it the bets that certify the right one.
+///
+/// # Errors
+/// If it cannot be drawn.
+pub fn betting(seed: u64) -> Result<Figure> {
+    let (truth, range) = (2.0 / 3.0, [0.0, 2.1]);
+    let weighted = |factor: f64, power: i32| {
+        from_fn(move |rng| factor * Hemisphere::Uniform.sample(rng).cos_theta().powi(power))
+    };
+    let check = Unbiased::new(truth, range)?.within(DELTA)?.seed(seed);
+    // ρ = 1: 2 L cos θ is right, L alone is what cosine directions would need
+    let (right, right_looks) = check.trace(&weighted(2.0, 2))?;
+    let (off, off_looks) = check.trace(&weighted(2.02, 2))?;
+    let (classic, classic_looks) = check.trace(&weighted(1.0, 1))?;
+    let [right_draws, off_draws, classic_draws] =
+        [right, off, classic].map(|report| report.estimate.draws() as f64);
+
+    let most = right_draws.max(off_draws);
+    let end = 10f64.powf(most.log10().ceil()).max(1e6);
+    let along = || Axis::log("draws", 100.0, end);
+    let wealth_axis = || {
+        let powers = (-3..=21).step_by(3).map(|power| (f64::from(power), power_of_ten(power)));
+        Axis::linear("wealth (1 at the start)", -4.0, 21.0).with_ticks(powers)
+    };
+
+    let mut against = Panel::new("Bets against the truth", along(), wealth_axis());
+    against.level("1/α", Ink::Black, 12.0);
+    let path = |looks: &[Look], wealth: fn(&Look) -> f64| {
+        thinned(looks).map(|look| [look.draws as f64, wealth(look) / LN_10]).collect::<Vec<_>>()
+    };
+    let truth_bets: fn(&Look) -> f64 = |look| look.against_truth;
+    for (series, ink, looks) in [
+        ("right", Ink::Blue, &right_looks),
+        ("1 % too large", Ink::Green, &off_looks),
+        ("uniform directions, cosine weight", Ink::Vermilion, &classic_looks),
+    ] {
+        let points = path(looks, truth_bets);
+        let last = points.last().copied();
+        against.line(series, ink, points).marks(&format!("{series}: verdict"), ink, Marker::Disc, last);
+    }
+    let classic_label = 1.4 * classic_draws;
+    against
+        .text(Ink::Black, [classic_label, 14.3], Side::Right, "1/α: biased, wrong with")
+        .text(Ink::Black, [classic_label, 13.0], Side::Right, "probability 10⁻¹² at most")
+        .text(Ink::Vermilion, [classic_label, 10.6], Side::Right, "uniform directions,")
+        .text(Ink::Vermilion, [classic_label, 9.3], Side::Right, "cosine weight: refuted")
+        .text(Ink::Vermilion, [classic_label, 8.0], Side::Right, &format!("after {classic_draws} draws"))
+        .text(Ink::Green, [0.2 * off_draws, 5.2], Side::Left, "1 % too large: refuted")
+        .text(Ink::Green, [0.2 * off_draws, 3.9], Side::Left, &format!("after {off_draws} draws"))
+        .text(Ink::Blue, [220.0, -1.9], Side::Right, "right: never refuted");
+
+    let mut certificate = Panel::new("Certifying the right estimator", along(), wealth_axis());
+    certificate
+        .level("1/β", Ink::Black, 6.0)
+        .line("bets against 0.5 % less", Ink::Blue, path(&right_looks, |look| look.against_too_low))
+        .line("bets against 0.5 % more", Ink::Purple, path(&right_looks, |look| look.against_too_high))
+        .text(Ink::Black, [100.0, 11.4], Side::Right, "1/β: unbiased within 0.5 %")
+        .text(Ink::Black, [100.0, 10.1], Side::Right, "once both have passed it; each")
+        .text(Ink::Black, [100.0, 8.8], Side::Right, "wrong with probability 10⁻⁶")
+        .text(Ink::Black, [100.0, 7.5], Side::Right, &format!("at most; here {right_draws} draws"))
+        .text(Ink::Blue, [220.0, 4.2], Side::Right, "solid: against 0.5 % less")
+        .text(Ink::Purple, [220.0, 2.9], Side::Right, "dotted: against 0.5 % more");
+
+    Plot {
+        name: "check_wealth",
+        title: format!(
+            "Betting against a mean: the classic mistake is refuted after {classic_draws} draws, a bias of 1 % after {off_draws}, and the right \
+             estimator certified within 0.5 % after {right_draws}"
+        ),
+        description: format!(
+            "Two panels, wealth against draws, both logarithmic, seed {seed}. Left, bets against the mean 2/3: those on uniform directions \
+             with the cosine weight reach 10¹² after {classic_draws} draws, those on an estimator 1 % too large after {off_draws}, those on \
+             a right one never. Right, for the right estimator: bets against means 0.5 % less and 0.5 % more both pass \
+             10⁶ by {right_draws} draws."
+        ),
+        edition: Edition::Solution,
+        width: Width::Page,
+        height_mm: 76.0,
+        columns: 2,
+        panels: vec![against, certificate],
+    }
+    .draw()
+}
+
+/// Looks at least 2 % apart, and the last.
+fn thinned(looks: &[Look]) -> impl Iterator<Item = &Look> {
+    let last = looks.last().map_or(0, |look| look.draws);
+    let mut next = 0.0;
+    looks.iter().filter(move |look| {
+        let draws = look.draws as f64;
+        let kept = draws >= next || look.draws == last;
+        if kept {
+            next = 1.02 * draws;
+        }
+        kept
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinned_looks_keep_the_first_and_the_last() {
+        let looks: Vec<_> = (1..=1000u16)
+            .map(|i| Look {
+                draws: 256 * u64::from(i),
+                against_truth: 0.0,
+                against_too_low: 0.0,
+                against_too_high: 0.0,
+            })
+            .collect();
+        let kept: Vec<_> = thinned(&looks).map(|look| look.draws / 256).collect();
+        assert_eq!(kept.first().copied(), Some(1));
+        assert_eq!(kept.last().copied(), Some(1000));
+        assert!((150..250).contains(&kept.len()), "{}", kept.len());
+    }
 }
