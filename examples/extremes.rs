@@ -1,6 +1,8 @@
-//! Where the obvious code breaks: a formula as one writes it down, an input at which it fails, and what the crate gives there.
+//! Where the obvious code breaks: a formula as one writes it down, an input at which it fails, and what the
+//! crate gives there.
 //!
-//! The truths are from another program, to more digits than `f64` has; an error is counted in units of the last place (ulps) of the truth.
+//! The truths are from another program, to more digits than `f64` has; an error is counted in units of the
+//! last place (ulps) of the truth.
 
 use std::process::ExitCode;
 
@@ -40,8 +42,10 @@ pub fn answer(options: &Options) -> Result<Appendix> {
     Ok(Appendix {
         example: "extremes",
         title: "Where the obvious code breaks",
-        text: "Each formula is right on paper and fails in floating point somewhere: a difference of nearly equal numbers keeps none of their digits, a square overflows, a sum swallows what is added. \
-               An error is counted in ulps, units of the last place of the truth, which was computed with another program."
+        text: "Each formula is right on paper and fails in floating point somewhere: a difference of nearly \
+               equal numbers keeps none of their digits, a square overflows, a sum swallows what is added. \
+               An error is counted in ulps, units of the last place of the truth, which was computed with \
+               another program."
             .into(),
         tables: vec![Table::new(
             "The obvious code, what it gives, and what the crate gives",

@@ -4,9 +4,10 @@
 //! cargo run --release --example own_worksheet -- --edition both --out my_sheet
 //! ```
 //!
-//! A question is texts and numbers, `Question`, and a function that answers it. What stands between « and » in its texts is a
-//! formula in its letters, whose value is put there: so `--B.1.length 0.5` changes statement, closed form, wrong answers and
-//! estimate at once, and `--variant NAME` gives a student numbers of their own.
+//! A question is texts and numbers, `Question`, and a function that answers it. What stands between « and »
+//! in its texts is a formula in its letters, whose value is put there: so `--B.1.length 0.5` changes
+//! statement, closed form, wrong answers and estimate at once, and `--variant NAME` gives a student numbers
+//! of their own.
 
 use std::f64::consts::{FRAC_1_PI, PI};
 use std::process::ExitCode;
@@ -36,11 +37,13 @@ const LENGTH: Parameter = Parameter {
 static NEEDLE: Question = Question {
     id: "B.1",
     title: "Buffon's needle",
-    statement: "A needle «l» times as long as the distance of the lines on a floor is thrown. How likely does it cross a line?",
+    statement: "A needle «l» times as long as the distance of the lines on a floor is thrown. How likely \
+                does it cross a line?",
     hint: "Where does its middle lie between two lines, and at which angle? Integrate over both.",
     formula: "P = 2l/π = «2l/π»",
     latex: &[r"P = \frac{2}{\pi}\int_0^{\pi/2} l \cos\varphi\,d\varphi = \frac{2l}{\pi} \approx «2l/π»"],
-    answer: "The middle is uniform between two lines, the angle φ uniform. At φ the needle reaches l cos φ across the lines, and crosses one \
+    answer: "The middle is uniform between two lines, the angle φ uniform. At φ the needle reaches l cos φ \
+             across the lines, and crosses one \
              with that probability.",
     numbers: &[Number {
         part: "",
@@ -93,14 +96,15 @@ const SIN_SQUARED: Letter = Letter {
 static DISC: Question = Question {
     id: "B.2",
     title: "A disc light above",
-    statement: "A round light of radiance 1 hangs above a table. From the point under its centre its rim is seen at «α» degrees to the \
+    statement: "A round light of radiance 1 hangs above a table. From the point under its centre its rim is \
+                seen at «α» degrees to the \
                 vertical. What is the irradiance E there?",
     hint: "Which part of the sky is lit, and how does cos θ weigh it?",
     formula: "E = π sin² α = «π s»",
-    latex: &[
-        r"E = \int_0^{2\pi}\!\!\int_0^{\alpha} \cos\theta \sin\theta\,d\theta\,d\varphi = \pi \sin^2\alpha \approx «π s»",
-    ],
-    answer: "The light fills the cone θ < α. Cosine directions meet it with probability sin² α, and each that does brings π.",
+    latex: &[r"E = \int_0^{2\pi}\!\!\int_0^{\alpha} \cos\theta \sin\theta\,d\theta\,d\varphi
+          = \pi \sin^2\alpha \approx «π s»"],
+    answer: "The light fills the cone θ < α. Cosine directions meet it with probability sin² α, and each \
+             that does brings π.",
     numbers: &[Number {
         part: "",
         symbol: "E",

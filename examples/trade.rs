@@ -1,7 +1,8 @@
 //! What does a second buy? The workbook's trades of speed against accuracy, measured on this machine.
 //!
-//! Each table compares estimators of one quantity, drawn in turns on one core: the best has the smallest variance × time. `--seconds S` takes about S seconds for each estimator. The same numbers are
-//! written as CSV, `trade_table.csv` beside the figures.
+//! Each table compares estimators of one quantity, drawn in turns on one core: the best has the smallest
+//! variance × time. `--seconds S` takes about S seconds for each estimator. The same numbers are written as
+//! CSV, `trade_table.csv` beside the figures.
 
 use std::fs;
 use std::process::ExitCode;
@@ -51,7 +52,8 @@ pub fn answer(options: &Options) -> Result<Appendix> {
         table("4.3: the light found by chance or sampled, up to two bounces", [&ways]),
         table(
             &format!(
-                "4.3: all bounces, ended by roulette or cut off. No closed form is known: the truth is an estimate, {:.7} ± {:.7}, whose error is part of that of each bias",
+                "4.3: all bounces, ended by roulette or cut off. No closed form is known: the truth is an \
+                 estimate, {:.7} ± {:.7}, whose error is part of that of each bias",
                 all.found.truth, all.found.truth_error
             ),
             [&all],
@@ -61,7 +63,8 @@ pub fn answer(options: &Options) -> Result<Appendix> {
             [&precisions],
         ),
         table(
-            "3.5, 5.3 and 4.3 (k bounces): independent numbers, and as many better placed ones, ranked for each estimator on their own",
+            "3.5, 5.3 and 4.3 (k bounces): independent numbers, and as many better placed ones, ranked for \
+             each estimator on their own",
             &placements,
         ),
     ];
@@ -93,7 +96,8 @@ pub fn answer(options: &Options) -> Result<Appendix> {
         example: "trade",
         title: "What does a second buy?",
         text: format!(
-            "Estimators of the same quantity, drawn in turns on one core of this machine, about {seconds} s each (seed {}). {}",
+            "Estimators of the same quantity, drawn in turns on one core of this machine, about {seconds} s \
+             each (seed {}). {}",
             options.seed,
             Comparison::EXPLAINED
         ),
@@ -121,7 +125,8 @@ fn directions(a: f64, trade: impl Fn(f64) -> Result<Trade>) -> Result<Compared> 
     Ok(Compared { question: "3.6", what: format!("light reflected under cos^a θ, a = {a}"), found })
 }
 
-/// Points in the plane: independent pairs, all pairs, jittered and Sobol, over the test set and Genz's families.
+/// Points in the plane: independent pairs, all pairs, jittered and Sobol, over the test set and Genz's
+/// families.
 fn points(trade: impl Fn(f64) -> Result<Trade>) -> Result<Vec<Compared>> {
     let mut found = Vec::new();
     for f in [Integrand::Paraboloid, Integrand::Gaussian, Integrand::Disc, Integrand::InverseDistance] {
@@ -208,8 +213,9 @@ fn all_bounces(trade: impl Fn(f64) -> Result<Trade>) -> Result<Compared> {
     Ok(Compared { question: "4.3", what: "all bounces (the truth is an estimate)".into(), found })
 }
 
-/// The light of all bounces in the sheet's scene, and its std error, for no closed form is known: from 10⁹ paths of up to ten bounces (cosine directions, the light sampled), and
-/// 2·10⁶ paths for what up to forty bounces add to that.
+/// The light of all bounces in the sheet's scene, and its std error, for no closed form is known: from 10⁹
+/// paths of up to ten bounces (cosine directions, the light sampled), and 2·10⁶ paths for what up to forty
+/// bounces add to that.
 const ALL_LIGHT: [f64; 2] = [0.3553311, 1.5e-6];
 
 /// The accurate logarithm against the fast one, which is within 1 ulp and goes wide.
@@ -246,7 +252,8 @@ fn precisions(trade: impl Fn(f64) -> Result<Trade>) -> Result<Compared> {
 /// The question, what is estimated, by what, and the truth with its error.
 type Placeable = (&'static str, &'static str, Box<dyn Estimator>, [f64; 2]);
 
-/// Independent numbers against jittered and Sobol ones, from a function of two numbers to paths of fifteen bounces: a jump, and every further bounce, takes some of the gain.
+/// Independent numbers against jittered and Sobol ones, from a function of two numbers to paths of fifteen
+/// bounces: a jump, and every further bounce, takes some of the gain.
 fn placements(trade: impl Fn(f64) -> Result<Trade>) -> Result<Vec<Compared>> {
     let surface = Lambertian::new(0.8)?;
     let (smooth, ring) = (CosinePower::new(1.0)?, RingLight::new(0.1)?);
@@ -307,7 +314,8 @@ fn placements(trade: impl Fn(f64) -> Result<Trade>) -> Result<Vec<Compared>> {
 const TWO: &str = "k ≤ 2";
 const FIFTEEN: &str = "k ≤ 15";
 
-/// Estimates and their std errors, for no closed forms are known: 20,000 and 3,000 sets of 65,536 Sobol points (cosine directions, the light sampled).
+/// Estimates and their std errors, for no closed forms are known: 20,000 and 3,000 sets of 65,536 Sobol
+/// points (cosine directions, the light sampled).
 const UP_TO_3: [f64; 2] = [0.335_016_21, 2.4e-7];
 const UP_TO_15: [f64; 2] = [0.355_326_94, 9.1e-7];
 
@@ -344,8 +352,10 @@ fn points_table(points: &[Compared]) -> Table {
         cells
     });
     Table::new(
-        "2.1: where the points stand; error slopes in n (independent points: −½), and seconds to 0.1 %, at least \
-         those of one draw, which is a whole replicate: the most efficient (those not told apart from it, too) \
+        "2.1: where the points stand; error slopes in n (independent points: −½), and seconds to 0.1 %, at \
+         least \
+         those of one draw, which is a whole replicate: the most efficient (those not told apart from it, \
+         too) \
          need not be the first there, as its replicates may be better than asked for",
         [
             "integrand",

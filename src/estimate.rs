@@ -1,10 +1,11 @@
 //! What a run of draws says: mean, variance, standard error and confidence interval.
 //!
-//! Moments are kept so that no digit is lost that `f64` draws allow: Σ Xᵢ and Σ (Xᵢ − X̄)² are each held as an
-//! unevaluated sum of two `f64`. Each slice of draws is summed in two passes, the squares about the slice's own mean,
-//! and slices are merged (Chan, Golub & LeVeque 1983): that adds positive terms only, so nothing cancels, however
-//! large the mean is beside the spread. Sums and squares carry exponents of their own: the mean and the std error are
-//! right whenever *they* are representable, even where the sum or the variance is not.
+//! Moments are kept so that no digit is lost that `f64` draws allow: Σ Xᵢ and Σ (Xᵢ − X̄)² are each held as
+//! an unevaluated sum of two `f64`. Each slice of draws is summed in two passes, the squares about the
+//! slice's own mean, and slices are merged (Chan, Golub & LeVeque 1983): that adds positive terms only, so
+//! nothing cancels, however large the mean is beside the spread. Sums and squares carry exponents of their
+//! own: the mean and the std error are right whenever *they* are representable, even where the sum or the
+//! variance is not.
 
 use std::fmt;
 
@@ -20,13 +21,14 @@ use crate::quantile::student_t;
 /// Draws summed in one two-pass sweep: they stay in the first-level cache between the passes.
 pub(crate) const SLICE: usize = 1024;
 
-/// Sums are kept about one of two exponents, 0 and 600, and squares about one of three, −600, 0 and 600, so that
-/// none over- or underflows.
+/// Sums are kept about one of two exponents, 0 and 600, and squares about one of three, −600, 0 and 600, so
+/// that none over- or underflows.
 const STEP: i32 = 600;
 const UP: f64 = f64::from_bits((1023 + STEP as u64) << 52);
 const DOWN: f64 = f64::from_bits((1023 - STEP as u64) << 52);
 
-/// Whether a square can be summed as it is. Its bits are in its order, and one comparison is sooner made than two.
+/// Whether a square can be summed as it is. Its bits are in its order, and one comparison is sooner made than
+/// two.
 #[inline(always)]
 fn is_plain(square: f64) -> bool {
     square.to_bits().wrapping_sub(DOWN.to_bits()) < UP.to_bits() - DOWN.to_bits()
@@ -49,15 +51,16 @@ const HUGE: f64 = f64::from_bits((1023 + 900) << 52);
 /// assert_eq!(Estimate::from_draws(&[7.0]).variance(), None); // one draw has no variance
 /// ```
 ///
-/// A draw that is NaN or infinite makes the mean NaN or infinite; [`crate::estimate()`] ends with an error instead.
+/// A draw that is NaN or infinite makes the mean NaN or infinite; [`crate::estimate()`] ends with an error
+/// instead.
 ///
 /// As JSON it is its sums to the last bit; an infinity or NaN among them is a string.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 #[serde(from = "Moments", into = "Moments")]
 pub struct Estimate {
     moments: Moments,
-    /// Where draws come one at a time, what their squares are taken about: the mean of at least the first half of them.
-    /// So at most half of the sum of squares is not variance, and a draw needs no division.
+    /// Where draws come one at a time, what their squares are taken about: the mean of at least the first
+    /// half of them. So at most half of the sum of squares is not variance, and a draw needs no division.
     pivot: Option<f64>,
 }
 
@@ -141,7 +144,8 @@ impl Estimate {
 
     /// Takes in all that another estimate of the same quantity has seen.
     ///
-    /// With δ = mean_b − mean_a: Σ² = Σ²_a + Σ²_b + δ² n_a n_b / n. Beyond 2⁶⁴ draws their number stays at the largest `u64`.
+    /// With δ = mean_b − mean_a: Σ² = Σ²_a + Σ²_b + δ² n_a n_b / n. Beyond 2⁶⁴ draws their number stays at
+    /// the largest `u64`.
     pub fn merge(&mut self, other: &Self) {
         *self = self.settled().merged(&other.settled()).into();
     }
@@ -203,12 +207,12 @@ impl Estimate {
         Some(0.5 * high - 0.5 * low)
     }
 
-    /// How many standard errors the mean lies from `truth`, ±∞ for an infinite one; `None` for fewer than two draws, and where
-    /// there is no distance: a truth that is NaN, or draws that were not finite.
+    /// How many standard errors the mean lies from `truth`, ±∞ for an infinite one; `None` for fewer than two
+    /// draws, and where there is no distance: a truth that is NaN, or draws that were not finite.
     ///
-    /// A difference of at most 8 units in the last place of `truth` is rounding and counts as none, so that an
-    /// estimator without variance has z = 0 where it is right. A truth of 0 has no last place: an estimator of it
-    /// should return 0 where its value is rounding alone.
+    /// A difference of at most 8 units in the last place of `truth` is rounding and counts as none, so that
+    /// an estimator without variance has z = 0 where it is right. A truth of 0 has no last place: an
+    /// estimator of it should return 0 where its value is rounding alone.
     pub fn z(&self, truth: f64) -> Option<f64> {
         let std_error = self.std_error()?;
         let off = self.mean() - truth;
@@ -379,7 +383,8 @@ impl NullaryFnOnce for TwoPasses<'_> {
 /// Sums side by side: as many as fill the widest vectors twice.
 const LANES: usize = 16;
 
-/// The sum of `f` over the draws, in interleaved lanes, each with what rounding took from it as `two_sum` finds it.
+/// The sum of `f` over the draws, in interleaved lanes, each with what rounding took from it as `two_sum`
+/// finds it.
 #[inline(always)]
 fn total(draws: &[f64], f: impl Fn(f64) -> f64, two_sum: impl Fn(f64, f64) -> (f64, f64)) -> Twofold {
     let (mut sums, mut lost) = ([0.0; LANES], [0.0; LANES]);
@@ -399,7 +404,8 @@ fn total(draws: &[f64], f: impl Fn(f64) -> f64, two_sum: impl Fn(f64, f64) -> (f
     in_pairs(sums, lost)
 }
 
-/// The sum of all lanes, in pairs and pairs of pairs: a function of its own, or the compiler would arrange the loop before it in its order.
+/// The sum of all lanes, in pairs and pairs of pairs: a function of its own, or the compiler would arrange
+/// the loop before it in its order.
 #[inline(never)]
 fn in_pairs(mut sums: [f64; LANES], mut lost: [f64; LANES]) -> Twofold {
     for half in [8, 4, 2, 1] {

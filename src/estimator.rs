@@ -1,4 +1,5 @@
-//! The one formula, ⟨Fₙ⟩ = 1/n Σ f(Xᵢ)/p(Xᵢ), and what is under it: an estimator is a function of uniform numbers.
+//! The one formula, ⟨Fₙ⟩ = 1/n Σ f(Xᵢ)/p(Xᵢ), and what is under it: an estimator is a function of uniform
+//! numbers.
 
 use pulp::NullaryFnOnce;
 
@@ -28,8 +29,9 @@ pub trait Estimator: Sync {
     /// One draw, from the numbers that `rng` gives.
     fn draw(&self, rng: &mut Stream) -> f64;
 
-    /// Fills `draws` with the next draws of the stream: the same as [`draw`](Self::draw) and [`Stream::next_draw`] by turns, though
-    /// not in this order. An estimator that can make many side by side overrides it.
+    /// Fills `draws` with the next draws of the stream: the same as [`draw`](Self::draw) and
+    /// [`Stream::next_draw`] by turns, though not in this order. An estimator that can make many side by side
+    /// overrides it.
     fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
         rng.one_at_a_time(draws, |rng| self.draw(rng));
     }
@@ -85,7 +87,8 @@ impl<F: Fn(&mut Stream) -> f64 + Sync> Estimator for FromFn<F> {
 
 /// An estimator whose draw is what a closure makes of N uniform numbers. It counts one evaluation a draw.
 ///
-/// Many draws are made side by side, in vectors where the closure's arithmetic allows: [`fast`](crate::fast) has functions that do.
+/// Many draws are made side by side, in vectors where the closure's arithmetic allows: [`fast`](crate::fast)
+/// has functions that do.
 ///
 /// ```
 /// use unbiased::{Budget, estimate, from_uniforms};
@@ -150,7 +153,8 @@ impl<const N: usize, F: Fn([f64; N]) -> f64> NullaryFnOnce for Evaluate<'_, N, F
     }
 }
 
-/// As arguments of their own the compiler knows them apart: a store into `draws` does not change what `f` holds.
+/// As arguments of their own the compiler knows them apart: a store into `draws` does not change what `f`
+/// holds.
 #[inline(always)]
 fn evaluate<const N: usize, F: Fn([f64; N]) -> f64>(f: &F, numbers: &[[f64; MANY]; N], draws: &mut [f64]) {
     for place in 0..draws.len().min(MANY) {
@@ -161,8 +165,8 @@ fn evaluate<const N: usize, F: Fn([f64; N]) -> f64>(f: &F, numbers: &[[f64; MANY
 /// A probability density that can be drawn from, by N uniform numbers.
 ///
 /// # Contract
-/// `pdf` is the density of `warp` of uniform numbers: it integrates to 1 over the points that can be drawn and is
-/// positive at every one of them. Units are those of 1/\[point\].
+/// `pdf` is the density of `warp` of uniform numbers: it integrates to 1 over the points that can be drawn
+/// and is positive at every one of them. Units are those of 1/\[point\].
 ///
 /// ```
 /// use unbiased::{Budget, Density, estimate, f_over_p};
@@ -216,8 +220,8 @@ impl<const N: usize, D: Density<N> + ?Sized> Density<N> for &D {
 ///
 /// It is unbiased if p > 0 wherever f ≠ 0 and ∫ |f| is finite; its variance is ∫ f²/p − (∫ f)², which is 0
 /// exactly when p is proportional to an f of one sign. (Worksheet 2.1, 3.4, 3.5; *Physically Based
-/// Rendering*, 4th ed., section 2.1.3.) Where a point is drawn at which p is 0, the density's two halves do not belong
-/// together; the draw is then NaN or infinite, which ends a run with an error.
+/// Rendering*, 4th ed., section 2.1.3.) Where a point is drawn at which p is 0, the density's two halves do
+/// not belong together; the draw is then NaN or infinite, which ends a run with an error.
 ///
 /// ```
 /// use unbiased::{Budget, estimate, f_over_p, lambertian::hemisphere::Hemisphere};

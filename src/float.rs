@@ -1,7 +1,8 @@
-//! Numbers of 106 bits with an exponent of their own: closed forms are computed in them and rounded once, at the end.
+//! Numbers of 106 bits with an exponent of their own: closed forms are computed in them and rounded once, at
+//! the end.
 //!
-//! In `f64` a formula of ten operations is off by up to ten halves of the last place, and a square that over- or underflows
-//! on the way loses everything. (Dekker 1971; Hida, Li & Bailey 2001.)
+//! In `f64` a formula of ten operations is off by up to ten halves of the last place, and a square that over-
+//! or underflows on the way loses everything. (Dekker 1971; Hida, Li & Bailey 2001.)
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -162,7 +163,8 @@ impl Div for Extended {
     }
 }
 
-/// What a cdf may be off by: sums of weights end an ulp or two from 1, and library cdfs are good to 1e-14 only.
+/// What a cdf may be off by: sums of weights end an ulp or two from 1, and library cdfs are good to 1e-14
+/// only.
 pub const ROUNDING: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// Whether it is in [0, 1] but for rounding. NaN is not.
@@ -174,7 +176,8 @@ pub fn is_probability(computed: f64) -> bool {
 mod tests {
     use super::Extended;
 
-    /// Exact in f64, so every digit is checked; the last places of the sums of 106 bits are those of the tests of the closed forms.
+    /// Exact in f64, so every digit is checked; the last places of the sums of 106 bits are those of the
+    /// tests of the closed forms.
     #[test]
     fn operations_keep_what_f64_loses() {
         let w = Extended::from;

@@ -1,12 +1,12 @@
-//! The Monte Carlo and global illumination workbook: every question in closed form, by an estimator with its error bar, and in
-//! a picture.
+//! The Monte Carlo and global illumination workbook: every question in closed form, by an estimator with its
+//! error bar, and in a picture.
 //!
 //! All of it is one formula,
 //!
 //! > ⟨Fₙ⟩ = 1/n Σ f(Xᵢ)/p(Xᵢ),
 //!
-//! and the crate reads as it: a [`Density`] to draw from, an integrand, an [`Estimator`] made of the two by [`f_over_p`], a
-//! [run](estimate()) of it, and an [`Estimate`] with its error.
+//! and the crate reads as it: a [`Density`] to draw from, an integrand, an [`Estimator`] made of the two by
+//! [`f_over_p`], a [run](estimate()) of it, and an [`Estimate`] with its error.
 //!
 //! ```
 //! use unbiased::{Budget, estimate, lambertian::{Lambertian, lambertian::hemisphere::Hemisphere}};
@@ -29,24 +29,27 @@
 //!
 //! | section | module | holds |
 //! |---|---|---|
-//! | 1 The inversion method | [`inversion`] | the exponential distribution, and the inversion of any one-dimensional cdf |
-//! | 2 Unbiased estimators | [`rectangle`] | independent pairs, all n² pairs, jittered and Sobol points on any rectangle |
-//! | 3 The diffuse cube | [`lambertian`] | uniform and cosine directions, a Lambertian surface, lights with exact variances |
-//! | 4 Paths | [`paths`], [`paths::room`] | the one scene, its closed forms, and paths of k, up to K, or all bounces through it |
+//! | 1 The inversion method | [`inversion`] | the exponential distribution, and any cdf inverted |
+//! | 2 Unbiased estimators | [`rectangle`] | independent, paired, jittered and Sobol points on a rectangle |
+//! | 3 The diffuse cube | [`lambertian`] | directions, a Lambertian surface, lights with exact variances |
+//! | 4 Paths | [`paths`], [`paths::room`] | the one scene, its closed forms, and paths through it |
 //! | 5 Russian roulette | [`roulette`] | bounce counts, the wrapper X_rr, and what roulette costs and buys |
 //!
-//! Whether an estimator is unbiased, and which classic mistake it looks like if not, is what [`check`] says; `examples/check_mine.rs` is the place to try one's own.
+//! Whether an estimator is unbiased, and which classic mistake it looks like if not, is what [`check`] says;
+//! `examples/check_mine.rs` is the place to try one's own.
 //!
 //! What a second of each buys is what [`trade`] measures.
 //!
-//! Underneath lie [`estimator`], [`placement`], [`run`], [`estimate`](mod@estimate), [`stream`] and [`error`]; above, with the feature `workbook` (on by default),
-//! `plot` and `workbook`. The files in `examples/` are the answers to read, one a question.
+//! Underneath lie [`estimator`], [`placement`], [`run`], [`estimate`](mod@estimate), [`stream`] and
+//! [`error`]; above, with the feature `workbook` (on by default), `plot` and `workbook`. The files in
+//! `examples/` are the answers to read, one a question.
 //!
 //! # Conventions
 //!
-//! U is uniform on [0, 1); ρ is an albedo, f_r = ρ/π the BRDF, θ the angle to the surface normal, ω_i points towards the light. A draw is one *independent*
-//! unbiased value: a jittered sweep or a scrambled Sobol set counts as one draw. Random numbers come from [`Stream`], a named generator
-//! with an explicit seed; the same seed gives the same bits for any number of threads.
+//! U is uniform on [0, 1); ρ is an albedo, f_r = ρ/π the BRDF, θ the angle to the surface normal, ω_i points
+//! towards the light. A draw is one *independent* unbiased value: a jittered sweep or a scrambled Sobol set
+//! counts as one draw. Random numbers come from [`Stream`], a named generator with an explicit seed; the same
+//! seed gives the same bits for any number of threads.
 //!
 //! # Features
 //!

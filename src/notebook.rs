@@ -1,7 +1,9 @@
-//! Values shown as what they are in a Jupyter notebook, with [evcxr](https://github.com/evcxr/evcxr)'s Rust kernel.
+//! Values shown as what they are in a Jupyter notebook, with [evcxr](https://github.com/evcxr/evcxr)'s Rust
+//! kernel.
 //!
-//! A cell that ends in a [`Figure`], an [`Estimate`], a verdict of [`check`], a [`Table`] or a [`Comparison`] shows a picture or HTML, and plain text where the viewer
-//! has nothing better: the kernel calls the type's `evcxr_display`. The five notebooks of the worksheet are in `notebooks/`.
+//! A cell that ends in a [`Figure`], an [`Estimate`], a verdict of [`check`], a [`Table`] or a [`Comparison`]
+//! shows a picture or HTML, and plain text where the viewer has nothing better: the kernel calls the type's
+//! `evcxr_display`. The five notebooks of the worksheet are in `notebooks/`.
 
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
@@ -70,7 +72,8 @@ pub trait Show {
     fn show(&self) -> Shown;
 }
 
-/// The kernel looks for a method of this name on what a cell ends in; a trait's would have to be imported in every notebook.
+/// The kernel looks for a method of this name on what a cell ends in; a trait's would have to be imported in
+/// every notebook.
 macro_rules! displayed {
     ($($kind:ty),*) => {
         $(impl $kind {
@@ -167,7 +170,8 @@ impl Show for Diagnosis {
                 @if index == 0 {
                     (said(good(self), line))
                 } @else {
-                    div style=(if line.starts_with("  ") { "margin-left: 2em" } else { "margin-left: 1em" }) { (line.trim_start()) }
+                    div style=(if line.starts_with("  ") { "margin-left: 2em" } else { "margin-left: \
+                        1em" }) { (line.trim_start()) }
                 }
             }
         };
@@ -189,7 +193,8 @@ impl Show for Table {
     }
 }
 
-/// What a second bought each rival on one core of this machine, when it reaches an error, and what to mind: those without bias by rank, then the biased ones.
+/// What a second bought each rival on one core of this machine, when it reaches an error, and what to mind:
+/// those without bias by rank, then the biased ones.
 impl Show for Comparison {
     fn show(&self) -> Shown {
         let relative = self.truth != 0.0;
@@ -258,7 +263,8 @@ const DRAWS: u64 = 200_000;
 /// Std errors within which a ratio is certain to lie.
 const CERTAIN: f64 = 5.0;
 
-/// Tries an estimator on all probes of its exercise, with 200,000 draws each, and says whether it is missing, consistent with a classic mistake, or unbiased within so much.
+/// Tries an estimator on all probes of its exercise, with 200,000 draws each, and says whether it is missing,
+/// consistent with a classic mistake, or unbiased within so much.
 ///
 /// # Errors
 /// If a draw other than the first is not finite.
@@ -295,7 +301,8 @@ pub fn check_mine(mine: &Attempt<'_>) -> Result<Checked> {
 }
 
 impl Checked {
-    /// Where nothing is wrong: the relative difference to the truth, on every probe, that is left after five std errors.
+    /// Where nothing is wrong: the relative difference to the truth, on every probe, that is left after five
+    /// std errors.
     pub fn within(&self) -> Option<f64> {
         match self {
             Self::Found(diagnosis) if diagnosis.finding() == Finding::NothingWrong => {
@@ -352,7 +359,8 @@ fn said(good: Option<bool>, sentence: &str) -> Markup {
         Some(false) => ("✗", "#D55E00"),
         None => ("?", "#888888"),
     };
-    html! { div style=(format!("border-left: 4px solid {colour}; padding-left: 0.6em")) { b { (mark) } " " (sentence) } }
+    html! { div style=(format!("border-left: 4px solid {colour}; padding-left: \
+    0.6em")) { b { (mark) } " " (sentence) } }
 }
 
 #[cfg(test)]

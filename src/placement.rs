@@ -1,20 +1,23 @@
 //! Better placed numbers for any estimator: jittered or Sobol points in place of independent ones.
 //!
-//! An estimator is a function of uniform numbers, f(u₁, u₂, …). Over points that fill the unit cube more evenly than independent
-//! ones its mean is the same and varies less. [`sobol`] and [`jittered`] make an estimator of an estimator: one draw of theirs
-//! is the mean over a whole set of points. The points of a set depend on each other, but the sets, each randomised afresh, do
-//! not, so draws are independent and the error bar made of them is right.
+//! An estimator is a function of uniform numbers, f(u₁, u₂, …). Over points that fill the unit cube more
+//! evenly than independent ones its mean is the same and varies less. [`sobol`] and [`jittered`] make an
+//! estimator of an estimator: one draw of theirs is the mean over a whole set of points. The points of a set
+//! depend on each other, but the sets, each randomised afresh, do not, so draws are independent and the error
+//! bar made of them is right.
 //!
 //! # Which dimensions matter
-//! With n points in place of n independent draws the variance falls by a factor that depends on how few numbers f hangs on,
-//! and how smoothly:
+//! With n points in place of n independent draws the variance falls by a factor that depends on how few
+//! numbers f hangs on, and how smoothly:
 //!
-//! - a smooth function of one or two numbers gains most: nearly n² (Sobol, in two dimensions or one) or n (jittered, in two);
+//! - a smooth function of one or two numbers gains most: nearly n² (Sobol, in two dimensions or one) or n
+//!   (jittered, in two);
 //! - a jump costs most of it: only the points in cells that the jump crosses still vary;
-//! - of many numbers only the few that f mostly depends on are placed well *together*. A path's first bounce has the first
-//!   few. In the sheet's scene 4,096 points in place of as many paths of one bounce lower the variance 3·10⁶ times, of two 280 times,
-//!   of three or fifteen five times (65,536 points: 23 and 13 times), and of two with L_o(p_j) known 4,500 times: the light of later
-//!   bounces depends on all of its numbers at once, and through the cube's edges in jumps.
+//! - of many numbers only the few that f mostly depends on are placed well *together*. A path's first bounce
+//!   has the first few. In the sheet's scene 4,096 points in place of as many paths of one bounce lower the
+//!   variance 3·10⁶ times, of two 280 times, of three or fifteen five times (65,536 points: 23 and 13 times),
+//!   and of two with L_o(p_j) known 4,500 times: the light of later bounces depends on all of its numbers at
+//!   once, and through the cube's edges in jumps.
 //!
 //! (*Physically Based Rendering*, 4th ed., chapter 8; Owen 1997; Burley 2020.)
 //!
@@ -42,15 +45,17 @@ use crate::stream::points::{Grid, Placement, Sobol};
 /// Sobol's points are kept to 16 digits by `sobol_burley`, so the set repeats after 2¹⁶ of them.
 const MOST_POINTS: u64 = 1 << 16;
 
-/// The mean of n draws of `estimator` over the first n points of an Owen-scrambled Sobol sequence: number d of draw i is
-/// coordinate d of point i.
+/// The mean of n draws of `estimator` over the first n points of an Owen-scrambled Sobol sequence: number d
+/// of draw i is coordinate d of point i.
 ///
-/// For n = 2ᵐ each number takes every interval of length 1/n once, and the first two every rectangle of 2⁻ᵏ by 2^(k−m): the
-/// error of a smooth function of them falls nearly as n^(−3/2) (Owen 1997). Other n are allowed, and gain less.
+/// For n = 2ᵐ each number takes every interval of length 1/n once, and the first two every rectangle of 2⁻ᵏ
+/// by 2^(k−m): the error of a smooth function of them falls nearly as n^(−3/2) (Owen 1997). Other n are
+/// allowed, and gain less.
 ///
-/// The points are those of `sobol_burley`, to as many binary digits as n takes; the digits below come from the stream, as in
-/// Owen's definition. Each coordinate has 32 random bits of its own to scramble by, and every point is then exactly uniform,
-/// on the same grid of 2⁻⁵³ as [`Stream::uniform`]. Beyond 256 numbers a draw's numbers are independent.
+/// The points are those of `sobol_burley`, to as many binary digits as n takes; the digits below come from
+/// the stream, as in Owen's definition. Each coordinate has 32 random bits of its own to scramble by, and
+/// every point is then exactly uniform, on the same grid of 2⁻⁵³ as [`Stream::uniform`]. Beyond 256 numbers a
+/// draw's numbers are independent.
 ///
 /// # Errors
 /// If n is not from 1 to 2¹⁶, after which the sequence would repeat.
@@ -60,12 +65,12 @@ pub fn sobol<E: Estimator>(estimator: E, points: u64) -> Result<Placed<E>> {
     Ok(Placed { estimator, points, side: None })
 }
 
-/// The mean of s² draws of `estimator` over one uniform point in each cell of an s × s grid: numbers 2k and 2k + 1 of a draw are
-/// a point of the plane; each plane has its cells in an order of its own.
+/// The mean of s² draws of `estimator` over one uniform point in each cell of an s × s grid: numbers 2k and
+/// 2k + 1 of a draw are a point of the plane; each plane has its cells in an order of its own.
 ///
-/// For a function of two numbers the variance is that *within* the cells alone: if it is smooth it falls as s⁻⁴ and the error as
-/// 1/evaluations; across a jump such as a disc's edge, as evaluations^(−3/4). It is never more than with as many
-/// independent points. (*Physically Based Rendering*, 4th ed., section 2.2.1.)
+/// For a function of two numbers the variance is that *within* the cells alone: if it is smooth it falls as
+/// s⁻⁴ and the error as 1/evaluations; across a jump such as a disc's edge, as evaluations^(−3/4). It is
+/// never more than with as many independent points. (*Physically Based Rendering*, 4th ed., section 2.2.1.)
 ///
 /// # Errors
 /// If the side s is not from 1 to 256: the set would have more than 2¹⁶ points.

@@ -1,7 +1,8 @@
-//! Section 4's room: rays, visibility and form factors against slower, plainer computations of the same, special rays one by one,
-//! and a great many that bounce about in the closed room.
+//! Section 4's room: rays, visibility and form factors against slower, plainer computations of the same,
+//! special rays one by one, and a great many that bounce about in the closed room.
 //!
-//! No test here has a false alarm, but for one comparison with a million random directions (3e-15): everything else is compared to rounding.
+//! No test here has a false alarm, but for one comparison with a million random directions (3e-15):
+//! everything else is compared to rounding.
 
 mod common;
 
@@ -15,7 +16,8 @@ use unbiased::lambertian::hemisphere::{Direction, Hemisphere};
 use unbiased::paths::room::{BoxRoom, Face, Scene, Vertex, form_factor, nearest_hit, visible};
 use unbiased::{Stream, from_fn};
 
-// ---- points and rays by plainer means ------------------------------------------------------------------------------
+// ---- points and rays by plainer means
+// ------------------------------------------------------------------------------
 
 /// A point on the face, uniformly.
 fn point_on(face: Face, rng: &mut Stream) -> Vertex {
@@ -42,8 +44,9 @@ fn any_direction(rng: &mut Stream) -> DVec3 {
     DVec3::new(sin * phi.cos(), sin * phi.sin(), z)
 }
 
-/// Where the ray meets the plane of `face` within its bounds: the distance in units of `direction`, the point, and how far inside the bounds it
-/// is. Every rectangle of the room by itself: no slabs, and nothing is known of which of them belong together.
+/// Where the ray meets the plane of `face` within its bounds: the distance in units of `direction`, the
+/// point, and how far inside the bounds it is. Every rectangle of the room by itself: no slabs, and nothing
+/// is known of which of them belong together.
 fn meets(face: Face, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3, f64)> {
     let ([low, high], n) = (face.bounds(), face.normal());
     let speed = n.dot(direction);
@@ -72,7 +75,8 @@ fn slow_hit(from: &Vertex, direction: DVec3) -> Option<(Face, DVec3, f64)> {
         .map(|(face, _, at, inside)| (face, at, inside))
 }
 
-/// Whether the open segment crosses no side of the cube, seen from either side, and leaves a cube's face outwards at both ends.
+/// Whether the open segment crosses no side of the cube, seen from either side, and leaves a cube's face
+/// outwards at both ends.
 fn slow_visible(a: &Vertex, b: &Vertex) -> bool {
     let way = b.position() - a.position();
     let into = |vertex: &Vertex, way: DVec3| vertex.face().is_cube() && vertex.normal().dot(way) < 0.0;
@@ -88,7 +92,8 @@ fn on_its_face(vertex: &Vertex) -> bool {
     at.cmpge(low).all() && at.cmple(high).all() && !under
 }
 
-// ---- rays ----------------------------------------------------------------------------------------------------------
+// ---- rays
+// ----------------------------------------------------------------------------------------------------------
 
 #[test]
 fn rays_end_where_eleven_rectangles_say() {
@@ -242,13 +247,16 @@ fn numbers() -> impl Strategy<Value = f64> {
 proptest! {
     #![proptest_config(common::config(200_000))]
 
-    /// Any bits at all: a point is on a face or an error, a ray ends on a face other than its own or is None as documented.
+    /// Any bits at all: a point is on a face or an error, a ray ends on a face other than its own or is None
+    /// as documented.
     #[test]
-    fn any_bits_end_on_a_face(point in prop::array::uniform3(numbers()), direction in prop::array::uniform3(numbers())) {
+    fn any_bits_end_on_a_face(point in prop::array::uniform3(numbers()),
+        direction in prop::array::uniform3(numbers())) {
         let Ok(from) = Vertex::at(point) else { return Ok(()) };
         prop_assert!(on_its_face(&from));
         let direction = DVec3::from_array(direction);
-        let allowed = direction.is_finite() && direction != DVec3::ZERO && from.normal().dot(direction) >= 0.0;
+        let allowed = direction.is_finite() && direction != DVec3::ZERO
+            && from.normal().dot(direction) >= 0.0;
         let hit = nearest_hit(&from, direction);
         prop_assert_eq!(hit.is_some(), allowed);
         if let Some(hit) = hit {
@@ -261,11 +269,12 @@ proptest! {
 proptest! {
     #![proptest_config(common::config(20_000))]
 
-    /// Points that rounding put a hair inside the cube, or that lie on several faces: a ray goes on from every hit, and does not come out on the
-    /// cube's other side.
+    /// Points that rounding put a hair inside the cube, or that lie on several faces: a ray goes on from
+    /// every hit, and does not come out on the cube's other side.
     #[test]
     fn rays_go_on_from_wherever_they_end(
-        (x, z) in (prop::sample::select(vec![0.5f64, 0.5f64.next_up(), 0.5f64.next_down(), 0.5 - 2e-16, 0.7]), 0.0..3.0),
+        (x, z) in (prop::sample::select(vec![0.5f64, 0.5f64.next_up(), 0.5f64.next_down(), 0.5 - 2e-16,
+            0.7]), 0.0..3.0),
         (from_y, to_y) in (-1.9..1.9, -0.6..0.6),
         mirror in any::<bool>(),
         u in (0.0..1.0, 0.0..1.0),
@@ -282,7 +291,8 @@ proptest! {
             let way = next.position() - at.position();
             // it went where it was sent
             let off = way - direction * way.dot(direction);
-            prop_assert!(off.length() <= 1e-14 && way.dot(direction) >= -1e-15, "{:?} {} {:?}", at, direction, next);
+            prop_assert!(off.length() <= 1e-14 && way.dot(direction) >= -1e-15, "{:?} {} \
+                {:?}", at, direction, next);
             at = next;
         }
     }
@@ -318,7 +328,8 @@ fn a_thousand_million_rays_stay_in_the_room() {
     bounce(1000, 1_000_000);
 }
 
-// ---- faces ---------------------------------------------------------------------------------------------------------
+// ---- faces
+// ---------------------------------------------------------------------------------------------------------
 
 #[test]
 fn faces_are_where_the_worksheet_puts_them() {
@@ -376,7 +387,8 @@ fn points_on_edges_belong_to_the_first_face() {
     }
 }
 
-// ---- visibility ----------------------------------------------------------------------------------------------------
+// ---- visibility
+// ----------------------------------------------------------------------------------------------------
 
 /// A point on one of the faces, off their edges by 1e-6 or more.
 fn inner_point(rng: &mut Stream) -> Vertex {
@@ -443,7 +455,8 @@ fn touching_the_cube_hides_nothing() {
     assert!(!sees([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0])); // nothing passes under it
 }
 
-// ---- form factors --------------------------------------------------------------------------------------------------
+// ---- form factors
+// --------------------------------------------------------------------------------------------------
 
 /// Nodes and weights of Gauss and Legendre on [0, 1], by Newton's iteration.
 fn gauss(n: usize) -> Vec<(f64, f64)> {
@@ -506,15 +519,16 @@ fn rectangle(x: [f64; 2], y: [f64; 2], z: f64) -> [DVec3; 4] {
     [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]].map(|[x, y]| DVec3::new(x, y, z))
 }
 
-/// Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, B-3: an element under the corner of a parallel rectangle a × b
-/// at the distance c.
+/// Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, B-3: an element under the corner of
+/// a parallel rectangle a × b at the distance c.
 fn howell_parallel(a: f64, b: f64, c: f64) -> f64 {
     let (x, y) = (a / c, b / c);
     let (sx, sy) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
     (x / sx * (y / sx).atan() + y / sy * (x / sy).atan()) / (2.0 * PI)
 }
 
-/// B-4: an element on a plane at right angles to the rectangle's, which starts above the element: a away from the element's plane, b along it, c high.
+/// B-4: an element on a plane at right angles to the rectangle's, which starts above the element: a away from
+/// the element's plane, b along it, c high.
 fn howell_perpendicular(a: f64, b: f64, c: f64) -> f64 {
     let s = a.hypot(c);
     ((b / c).atan() - c / s * (b / s).atan()) / (2.0 * PI)
@@ -650,7 +664,8 @@ fn form_factors_of_small_polygons_keep_their_digits() {
         println!("{given:e}: {:.1} ε", (given / exact - 1.0) / f64::EPSILON);
         assert!((given / exact - 1.0).abs() <= 1e-13, "{given} for {exact}");
     }
-    // squares of side 2a overhead and off to the side: A cos θ cos θ′/(πr²), as the next term is smaller by a²
+    // squares of side 2a overhead and off to the side: A cos θ cos θ′/(πr²), as the next term is smaller by
+    // a²
     for a in [1e-8, 1e-9, 1e-12] {
         for [x, y] in [[0.0, 0.0], [0.1, 0.3], [0.3, -0.45], [0.5, 0.5]] {
             let r2 = x * x + y * y + 9.0;
@@ -682,7 +697,8 @@ fn form_factors_add_up() {
     }
 }
 
-/// The part of the cosine directions that meet a polygon is its P: 1.2 million draws, z ≤ 8 (1.2e-15 each of the two), and a bias of 1 % is caught.
+/// The part of the cosine directions that meet a polygon is its P: 1.2 million draws, z ≤ 8 (1.2e-15 each of
+/// the two), and a bias of 1 % is caught.
 #[test]
 fn form_factors_are_probabilities() {
     for (i, n) in [DVec3::Z, DVec3::new(0.6, 0.0, 0.8)].into_iter().enumerate() {
@@ -783,7 +799,8 @@ fn normals_have_a_direction_and_points_are_finite() {
     }
 }
 
-/// By tests/data/closed_forms.py's formula in 2400 bits: the sky above a plane, seen aslant, of which the horizon takes 8 %.
+/// By tests/data/closed_forms.py's formula in 2400 bits: the sky above a plane, seen aslant, of which the
+/// horizon takes 8 %.
 #[test]
 fn the_largest_polygons_are_half_spaces() {
     let tilted = DVec3::new(0.3, -0.5, 0.9);
@@ -812,7 +829,8 @@ proptest! {
     /// P has no unit of length: a power of two changes no bit.
     #[test]
     fn form_factors_know_no_unit_of_length(
-        corners in prop::collection::vec(prop::array::uniform3(-1.0..1.0), 3..6), sizes in prop::collection::vec(-40..40, 6),
+        corners in prop::collection::vec(prop::array::uniform3(-1.0..1.0), 3..6),
+            sizes in prop::collection::vec(-40..40, 6),
         point in prop::array::uniform3(-1.0..1.0), n in prop::array::uniform3(-1.0..1.0), power in -800..800,
     ) {
         let corners = corners.into_iter().zip(sizes).map(|(c, size)| DVec3::from_array(c) * 2f64.powi(size));
@@ -822,7 +840,8 @@ proptest! {
         prop_assert_eq!(form_factor(&corners, point, n), form_factor(&scaled, point * unit, n));
     }
 
-    /// A rectangle of any size, cut into four anywhere, at any tilt: each of five values is off by 1e-15 at most.
+    /// A rectangle of any size, cut into four anywhere, at any tilt: each of five values is off by 1e-15 at
+    /// most.
     #[test]
     fn parts_make_up_the_whole(
         logs in prop::array::uniform2(-16.0..300.0), offset in prop::array::uniform2(-1.5..1.5),
@@ -846,17 +865,20 @@ proptest! {
         };
         let whole = p([x[0], x[2]], [y[0], y[2]]);
         let halves = p([x[0], x[1]], [y[0], y[2]]) + p([x[1], x[2]], [y[0], y[2]]);
-        let quarters: f64 = [0, 1].iter().flat_map(|i| [0, 1].map(|j| p([x[*i], x[i + 1]], [y[j], y[j + 1]]))).sum();
+        let quarters: f64 = [0, 1].iter().flat_map(|i| [0, 1].map(|j| p([x[*i], x[i + 1]], [y[j],
+            y[j + 1]]))).sum();
         prop_assert!((whole - halves).abs() <= 3e-15, "{whole} {halves}");
         prop_assert!((whole - quarters).abs() <= 5e-15, "{whole} {quarters}");
     }
 
-    /// What a triangle around the foot leaves out of the half-space lies within r⁻¹ of the plane's horizon, r the radius of the
-    /// circle in it in units of the distance: a band of the solid angle 2π/r, and so less than 2/r of P, by a factor of two or
-    /// more. Up to 1e12, where the coordinates are rounded by 1e-3 of the distance.
+    /// What a triangle around the foot leaves out of the half-space lies within r⁻¹ of the plane's horizon, r
+    /// the radius of the circle in it in units of the distance: a band of the solid angle 2π/r, and so less
+    /// than 2/r of P, by a factor of two or more. Up to 1e12, where the coordinates are rounded by 1e-3 of
+    /// the distance.
     #[test]
     fn large_triangles_are_half_spaces(
-        way in prop::array::uniform3(-1.0..1.0), n in prop::array::uniform3(-1.0..1.0), log in 1.0..12.0f64, turn in 0.0..6.3f64,
+        way in prop::array::uniform3(-1.0..1.0), n in prop::array::uniform3(-1.0..1.0), log in 1.0..12.0f64,
+            turn in 0.0..6.3f64,
     ) {
         let [way, n] = [way, n].map(DVec3::from_array);
         prop_assume!(way.length() > 0.1 && n.length() > 0.1);
@@ -872,10 +894,12 @@ proptest! {
         prop_assert!((p - half_space).abs() <= 2.0 / r, "{p} {half_space}");
     }
 
-    /// In the plane of a triangle: at a corner, in the middle of an edge, on it, inside or outside, however large and wherever.
+    /// In the plane of a triangle: at a corner, in the middle of an edge, on it, inside or outside, however
+    /// large and wherever.
     #[test]
     fn nothing_is_seen_edge_on(
-        p in prop::array::uniform3(-1i64 << 40..1i64 << 40), u in prop::array::uniform3(-1i64 << 40..1i64 << 40),
+        p in prop::array::uniform3(-1i64 << 40..1i64 << 40),
+            u in prop::array::uniform3(-1i64 << 40..1i64 << 40),
         v in prop::array::uniform3(-1i64 << 40..1i64 << 40), n in prop::array::uniform3(-1.0..1.0),
         places in prop::array::uniform3(prop::array::uniform2(-3i64..4)), power in -900..900,
     ) {
@@ -889,23 +913,28 @@ proptest! {
     /// A hair beside the plane, of triangles of any place and size: one side sees what the other does not.
     #[test]
     fn the_plane_is_passed_at_once(
-        p in prop::array::uniform3(-1i64 << 40..1i64 << 40), u in prop::array::uniform3(-1i64 << 40..1i64 << 40),
-        v in prop::array::uniform3(-1i64 << 40..1i64 << 40), n in prop::array::uniform3(-1.0..1.0), axis in 0..3usize,
+        p in prop::array::uniform3(-1i64 << 40..1i64 << 40),
+            u in prop::array::uniform3(-1i64 << 40..1i64 << 40),
+        v in prop::array::uniform3(-1i64 << 40..1i64 << 40), n in prop::array::uniform3(-1.0..1.0),
+            axis in 0..3usize,
     ) {
         let at = |a: i64, b: i64| DVec3::from_array([0, 1, 2].map(|i| (p[i] + a * u[i] + b * v[i]) as f64));
         let (corners, n) = ([at(2, 0), at(-1, 2), at(-1, -2)], DVec3::from_array(n));
         let area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-        prop_assume!(area.abs().min_element() > 1e-3 * area.length() && area.length() > 1e20 && n.length() > 0.1);
+        prop_assume!(area.abs().min_element() > 1e-3 * area.length() && area.length() > 1e20
+            && n.length() > 0.1);
         // 2⁻¹² m beside a triangle of 10⁹ km
         let aside = DVec3::AXES[axis] * 0.5f64.powi(12);
         let seen = [aside, -aside].map(|aside| form_factor(&corners, at(0, 0) + aside, n));
         let toward = area.normalize() * -area[axis].signum();
         let half_space = 0.5 * (1.0 + n.normalize().dot(toward));
-        // the foot is the triangle's centre, a third of its least height from an edge; the band of the test above
+        // the foot is the triangle's centre, a third of its least height from an edge; the band of the test
+        // above
         let [a, b, c] = corners;
         let longest = (a - b).length().max((b - c).length()).max((c - a).length());
         let room = 2.0 * aside.length() / (area.length() / longest / 3.0) + 1e-15;
-        prop_assert!((seen[0] - half_space).abs() <= room && (seen[1] - (1.0 - half_space)).abs() <= room, "{seen:?} {half_space}");
+        prop_assert!((seen[0] - half_space).abs() <= room && (seen[1] - (1.0 - half_space)).abs() <= room,
+            "{seen:?} {half_space}");
     }
 }
 
@@ -914,7 +943,8 @@ proptest! {
 
     #[test]
     fn form_factors_of_anything_finite_are_in_range(
-        corners in prop::collection::vec(prop::array::uniform3(numbers().prop_filter("finite", |x| x.is_finite())), 0..6),
+        corners in prop::collection::vec(prop::array::uniform3(numbers().prop_filter("finite",
+            |x| x.is_finite())), 0..6),
         point in prop::array::uniform3(-2.0..2.0),
         up in 0..3usize,
     ) {
@@ -924,7 +954,8 @@ proptest! {
     }
 }
 
-// ---- the scene -----------------------------------------------------------------------------------------------------
+// ---- the scene
+// -----------------------------------------------------------------------------------------------------
 
 #[test]
 fn direct_light_is_the_worksheets() {
@@ -950,8 +981,9 @@ fn direct_light_is_the_worksheets() {
     }
 }
 
-/// Lights up to the whole ceiling, p in the middle of the cube's top, in its corner, and elsewhere: half-width, p's x and y, and the part of two bounces for albedos and a radiance
-/// of 1, by tests/data/two_bounces.py.
+/// Lights up to the whole ceiling, p in the middle of the cube's top, in its corner, and elsewhere:
+/// half-width, p's x and y, and the part of two bounces for albedos and a radiance of 1, by
+/// tests/data/two_bounces.py.
 const TWO_BOUNCES: [(f64, [f64; 2], f64); 27] = [
     (0.5, [0.0, 0.0], 0.009975980387042279),
     (0.5, [0.5, -0.5], 0.010152748997395585),
@@ -1004,7 +1036,8 @@ fn two_bounces_are_known_to_1e_12() {
         worst = worst.max(off);
     }
     assert!(worst <= 1e-12, "{worst:e}");
-    // no jump where the cells change, or where they can be no smaller; L₂ rises by 0.13 of itself a metre at the end, and by 1.6 or less elsewhere
+    // no jump where the cells change, or where they can be no smaller; L₂ rises by 0.13 of itself a metre at
+    // the end, and by 1.6 or less elsewhere
     let steps = [0.9999999999, 1.0, 1.0000000001, 1.0000000002];
     let last = [1e-9, 1e-11, 1e-13, 0.0].map(|d| 2.0 - d);
     for h in [&steps[..], &last[..]] {
@@ -1050,32 +1083,31 @@ fn bad_scenes_are_errors() {
         says(Scene { wall_albedo: value, ..scene }, &format!("the walls' {rest}"));
         says(Scene { cube_albedo: value, ..scene }, &format!("the cube's {rest}"));
     }
-    let beyond = 1e100f64.next_up().to_string();
-    let below = 1e-100f64.next_down().to_string();
     for (value, shown) in [
         (-1.0, "-1"),
         (f64::INFINITY, "inf"),
         (f64::NAN, "NaN"),
-        (1e100f64.next_up(), &beyond),
-        (1e-100f64.next_down(), &below),
+        (1e100f64.next_up(), "1.0000000000000002e100"),
+        (1e-100f64.next_down(), "9.999999999999999e-101"),
     ] {
         let rest = format!("must be 0, or from 1e-100 to 1e100, not {shown}");
         says(Scene { radiance: value, ..scene }, &format!("the light's radiance {rest}"));
         says(Scene { emission: value, ..scene }, &format!("the faces' emission {rest}"));
     }
-    let narrow = 1e-50f64.next_down().to_string();
     for (value, shown) in [
         (2.0000000000000004, "2.0000000000000004"),
         (-0.5, "-0.5"),
         (f64::NAN, "NaN"),
-        (1e-50f64.next_down(), &narrow),
+        (1e-50f64.next_down(), "9.999999999999999e-51"),
     ] {
         let rest = format!("must be 0 (no light), or from 1e-50 to 2 (all of the ceiling), not {shown}");
         says(Scene { light_half_width: value, ..scene }, &format!("the light's half-width {rest}"));
     }
-    let no_face = "lies on no face: it must lie on the room's (|x| = 2, |y| = 2, z = 0 or z = 4) or on the cube's (|x| = 0.5 or |y| = 0.5 up to z = 1, or z = 1 within)";
+    let no_face = "lies on no face: it must lie on the room's (|x| = 2, |y| = 2, z = 0 or z = 4) or on the \
+                   cube's (|x| = 0.5 or |y| = 0.5 up to z = 1, or z = 1 within)";
     let under = "lies under the cube: on the floor, |x| or |y| must be at least 0.5";
-    let light = "lies on the light, which reflects nothing: on the ceiling, |x| or |y| must be above the light's half-width";
+    let light = "lies on the light, which reflects nothing: on the ceiling, |x| or |y| must be above the \
+                 light's half-width";
     let points = [
         ([0.0, 0.0, 1.5], "(0, 0, 1.5)", no_face),
         ([0.0, 0.0, 0.5], "(0, 0, 0.5)", no_face),

@@ -46,8 +46,9 @@ fn check_of(section: usize, delta: f64) -> Unbiased {
     Unbiased::new(truth, range).unwrap().within(delta).unwrap()
 }
 
-/// 1,000 pinned seeds an estimator at α = 0.05: a measured rate, at seeds that no environment variable freshens.
-/// Every right estimator is certified, but for those called biased. (At δ = 1e-2, sixteen times the draws: 24, 12, 15 and 30 of 1000.)
+/// 1,000 pinned seeds an estimator at α = 0.05: a measured rate, at seeds that no environment variable
+/// freshens. Every right estimator is certified, but for those called biased. (At δ = 1e-2, sixteen times the
+/// draws: 24, 12, 15 and 30 of 1000.)
 #[test]
 fn at_most_five_in_a_hundred_right_estimators_are_called_biased_at_alpha_005() {
     for section in SECTIONS {
@@ -79,8 +80,9 @@ fn right_estimators_are_certified_within_a_thousandth() {
     }
 }
 
-/// The trace is the run's own: it ends where the verdict falls, and no look before that justified one. (α, β: 2e-6 in all that a right
-/// estimator is refuted or a wrong one certified, for the seeds are fixed ones unless asked otherwise.)
+/// The trace is the run's own: it ends where the verdict falls, and no look before that justified one. (α, β:
+/// 2e-6 in all that a right estimator is refuted or a wrong one certified, for the seeds are fixed ones
+/// unless asked otherwise.)
 #[test]
 fn a_trace_ends_as_the_report_says() {
     for section in SECTIONS {
@@ -118,8 +120,8 @@ fn a_trace_ends_as_the_report_says() {
     }
 }
 
-/// 16 draws of 10³⁰ times the mean claimed multiply the boldest stake, a tenth of a half, by (0.1 + 0.9e30)¹⁶, which is far
-/// outside f64.
+/// 16 draws of 10³⁰ times the mean claimed multiply the boldest stake, a tenth of a half, by (0.1 +
+/// 0.9e30)¹⁶, which is far outside f64.
 #[test]
 fn wealth_beyond_f64_is_kept_as_its_logarithm() {
     let (_, looks) = Unbiased::new(1e-30, [0.0, 1.0]).unwrap().trace(&from_fn(|_| 1.0)).unwrap();
@@ -128,7 +130,8 @@ fn wealth_beyond_f64_is_kept_as_its_logarithm() {
     assert!((looks[0].against_truth / wealth - 1.0).abs() <= 1e-12, "{:?}, not {wealth}", looks[0]);
 }
 
-/// A bias of one part in a thousand, planted in an estimator of each section, is refuted: β = 1e-6 bounds the chance that it is certified first.
+/// A bias of one part in a thousand, planted in an estimator of each section, is refuted: β = 1e-6 bounds the
+/// chance that it is certified first.
 #[test]
 fn planted_biases_of_a_thousandth_are_refuted() {
     for section in SECTIONS {
@@ -172,7 +175,8 @@ fn the_number_of_threads_cannot_be_seen() {
     }
 }
 
-/// Means of jittered sweeps are unbiased draws all the same, of far smaller variance: the same certificate for a fraction of the evaluations.
+/// Means of jittered sweeps are unbiased draws all the same, of far smaller variance: the same certificate
+/// for a fraction of the evaluations.
 #[test]
 fn jittered_sweeps_are_certified_with_fewer_evaluations() {
     let rectangle = Rectangle::new([-2.0, 2.0], [-2.0, 2.0]).unwrap();
@@ -599,7 +603,8 @@ fn samplers_with_another_law_are_refused() {
     assert!(distributed_as(&nan, cdf, 0.1, 1e-12, 1).is_err());
 }
 
-/// As many draws as it takes, and none more, for a deviation to lie beyond the band of α and that of 1e-6 together; the strain is the deviation in bands.
+/// As many draws as it takes, and none more, for a deviation to lie beyond the band of α and that of 1e-6
+/// together; the strain is the deviation in bands.
 #[test]
 fn a_comparison_of_laws_takes_the_draws_that_its_deviation_needs() {
     let middle = from_fn(|_| 0.5);
@@ -613,7 +618,8 @@ fn a_comparison_of_laws_takes_the_draws_that_its_deviation_needs() {
     }
 }
 
-/// −0 and 0 are one value, and so are all draws that are infinite: whichever way they come, the law is the same.
+/// −0 and 0 are one value, and so are all draws that are infinite: whichever way they come, the law is the
+/// same.
 #[test]
 fn draws_are_compared_as_numbers() {
     let place = |found: &check::Agreement| match found.place {
@@ -662,10 +668,11 @@ fn draws_are_compared_as_numbers() {
 proptest! {
     #![proptest_config(common::config(200))]
 
-    /// Of any discrete law, a sampler that signs its zeros as it likes agrees, and one with 0.2 of the mass elsewhere does
-    /// not: 0.1 is seen with probability 1 − 1e-6.
+    /// Of any discrete law, a sampler that signs its zeros as it likes agrees, and one with 0.2 of the mass
+    /// elsewhere does not: 0.1 is seen with probability 1 − 1e-6.
     #[test]
-    fn any_law_on_integers_agrees_with_its_draws(weights in prop::collection::vec(0.1..1.0f64, 1..12), least in -12i32..1) {
+    fn any_law_on_integers_agrees_with_its_draws(weights in prop::collection::vec(0.1..1.0f64, 1..12),
+        least in -12i32..1) {
         let total: f64 = weights.iter().sum();
         let value = |k: usize| f64::from(least) + k as f64;
         let sampler = from_fn(|rng| {
@@ -674,7 +681,8 @@ proptest! {
             let x = value(k.min(weights.len() - 1));
             if x == 0.0 { 0.0 * sign } else { x }
         });
-        let cdf = |x: f64| (0..weights.len()).filter(|k| value(*k) <= x).map(|k| weights[k] / total).sum::<f64>();
+        let cdf = |x: f64| (0..weights.len()).filter(|k| value(*k) <= x).map(|k|
+            weights[k] / total).sum::<f64>();
         let found = distributed_as(&sampler, cdf, 0.1, 1e-12, common::seed(116)).unwrap();
         prop_assert!(found.agrees, "{}", found);
         let other = |x: f64| 0.8 * cdf(x) + if x < 20.0 { 0.0 } else { 0.2 };
@@ -794,7 +802,8 @@ fn reports_are_sentences() {
     assert!(agreement.to_string().contains("not seen:"));
 }
 
-/// What quadrature finds hard: a kink or a jump close beside a point where pieces meet, an inner integral that cancels, and draws that vary by rounding alone.
+/// What quadrature finds hard: a kink or a jump close beside a point where pieces meet, an inner integral
+/// that cancels, and draws that vary by rounding alone.
 #[test]
 fn quadrature_sees_jumps_beside_its_own_seams_and_stops_at_rounding() {
     for jump in [0.5 + 1e-4, 0.5 - 1e-7, 0.75 + 1e-10, 1e-3, 1.0 - 1e-5] {

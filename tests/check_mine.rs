@@ -48,7 +48,8 @@ fn samples(n: u32, f: &dyn Fn(f64) -> f64) -> String {
     (0..n).map(|i| format!("{}\n", f((f64::from(i) + 0.5) / f64::from(n)))).collect()
 }
 
-// ---- one's own estimator ----------------------------------------------------------------------------------------
+// ---- one's own estimator
+// ----------------------------------------------------------------------------------------
 
 #[test]
 fn the_readers_estimator_is_judged_and_its_mistake_named() {
@@ -120,7 +121,8 @@ fn help_lists_every_option() {
     }
 }
 
-// ---- draws of other programs ------------------------------------------------------------------------------------
+// ---- draws of other programs
+// ------------------------------------------------------------------------------------
 
 #[test]
 fn the_sheets_own_numbers_are_probe_1() {
@@ -200,11 +202,13 @@ fn programs_in_other_languages_run_right_and_wrong() {
         ("1.1", "    return AVERAGE[average](-math.log(1 - random.random()) / rate, rate)"),
         (
             "2.1",
-            "    x, y = random.uniform(a, b), random.uniform(c, d)\n    return (b - a) * (d - c) * F[f](x, y)",
+            "    x, y = random.uniform(a, b), random.uniform(c, d)\n    return (b - a) * (d - c) * F[f](x, \
+             y)",
         ),
         (
             "3.5",
-            "    r2, phi = random.random(), 2 * math.pi * random.random()\n    r = math.sqrt(r2)\n    return albedo * LIGHT[light](r * math.cos(phi), r * math.sin(phi), math.sqrt(1 - r2))",
+            "    r2, phi = random.random(), 2 * math.pi * random.random()\n    r = math.sqrt(r2)\n    return \
+             albedo * LIGHT[light](r * math.cos(phi), r * math.sin(phi), math.sqrt(1 - r2))",
         ),
         ("5", "    return (0.5 + random.random()) / p_rr if random.random() < p_rr else 0"),
         ("5.2", "    return math.floor(math.log(1 - random.random()) / math.log(p_rr))"),
@@ -213,11 +217,14 @@ fn programs_in_other_languages_run_right_and_wrong() {
         ("1.1", "    return value(average, -std::log(1 - uniform()) / rate, rate);"),
         (
             "2.1",
-            "    double x = a + (b - a) * uniform(), y = c + (d - c) * uniform();\n    return (b - a) * (d - c) * value(f, x, y);",
+            "    double x = a + (b - a) * uniform(), y = c + (d - c) * uniform();\n    return (b - a) * (d - \
+             c) * value(f, x, y);",
         ),
         (
             "3.5",
-            "    double r2 = uniform(), r = std::sqrt(r2), phi = 2 * std::acos(-1.0) * uniform();\n    return albedo * radiance(light, r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r2));",
+            "    double r2 = uniform(), r = std::sqrt(r2), phi = 2 * std::acos(-1.0) * \
+             uniform();\n    return albedo * radiance(light, r * std::cos(phi), r * std::sin(phi), \
+             std::sqrt(1 - r2));",
         ),
         ("5", "    double x = 0.5 + uniform();\n    return uniform() < p_rr ? x / p_rr : 0;"),
         ("5.2", "    return std::floor(std::log(1 - uniform()) / std::log(p_rr));"),
@@ -297,7 +304,8 @@ fn probes_say_all_that_a_program_needs() {
     }
 }
 
-// ---- answers worked out by hand ---------------------------------------------------------------------------------
+// ---- answers worked out by hand
+// ---------------------------------------------------------------------------------
 
 #[test]
 fn numbers_worked_out_by_hand_are_judged_in_words() {
@@ -329,7 +337,8 @@ fn numbers_worked_out_by_hand_are_judged_in_words() {
     }
 }
 
-// ---- a class ----------------------------------------------------------------------------------------------------
+// ---- a class
+// ----------------------------------------------------------------------------------------------------
 
 #[test]
 fn a_class_is_judged_in_one_command() {
@@ -337,7 +346,8 @@ fn a_class_is_judged_in_one_command() {
     let answers = written(
         &folder,
         "answers.csv",
-        "\u{feff}student,question,answer,variant\nAna,1.2,1.386,\nBo,1.2,0.602,\n\"Cy, Jr\",1.2,.602,\nAna,3.2,0.5,albedo=0.5\nBo,3.2,7,\n\
+        "\u{feff}student,question,answer,variant\nAna,1.2,1.386,\nBo,1.2,0.602,\n\"Cy, \
+         Jr\",1.2,.602,\nAna,3.2,0.5,albedo=0.5\nBo,3.2,7,\n\
          Ana,5.1(iii),5,\nBo,5.1(iii),four,\nAna,2.1,1,\n",
     );
     let draws = folder.join("draws");

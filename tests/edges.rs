@@ -1,5 +1,6 @@
-//! Every domain edge: any bits give a result or a typed error, never NaN out of valid input; monotone where the mathematics is, in
-//! range where it is, and back again where it leads back. And samplers on generators that are stuck at one word.
+//! Every domain edge: any bits give a result or a typed error, never NaN out of valid input; monotone where
+//! the mathematics is, in range where it is, and back again where it leads back. And samplers on generators
+//! that are stuck at one word.
 //!
 //! What the tests of a module hold already is not repeated here.
 
@@ -77,7 +78,8 @@ proptest! {
         let pairs = [(x, y), (y, x), (x, x.next_up()), (y.next_down(), y)];
         for (x, y) in pairs.into_iter().filter(|(x, y)| x <= y) {
             prop_assert!(law.cdf(x) <= law.cdf(y), "F({x:?}) > F({y:?})");
-            // both are made of e^(−λx) and a correction for the rounding of λx, so neighbours may lie an ulp the wrong way
+            // both are made of e^(−λx) and a correction for the rounding of λx, so neighbours may lie an ulp
+            // the wrong way
             let falls = |from: f64, to: f64| from >= to || ulps(from, to) <= 1;
             prop_assert!(falls(law.survival(x), law.survival(y)), "S({x:?}) < S({y:?})");
             prop_assert!(x < 0.0 || falls(law.pdf(x), law.pdf(y)), "p({x:?}) < p({y:?})");
@@ -86,20 +88,24 @@ proptest! {
             prop_assert!(law.inverse_cdf(u)? <= law.inverse_cdf(v)?);
             prop_assert!(law.inverse_survival(u)? >= law.inverse_survival(v)?);
         }
-        // dF/F = λx e^(−λx)/(1 − e^(−λx)) · dx/x: the condition number is at most 1, and only a subnormal or infinite x has not the digits
+        // dF/F = λx e^(−λx)/(1 − e^(−λx)) · dx/x: the condition number is at most 1, and only a subnormal or
+        // infinite x has not the digits
         let x = law.inverse_cdf(u)?;
         if x.is_normal() {
             prop_assert!(ulps(law.cdf(x), u) <= 2, "F(F⁻¹({u:?})) = {:?}", law.cdf(x));
         }
-        // dS/S = −λx · dx/x, so every ulp of x costs |ln u| ulp of u: 2 ulp where u ≥ 1/e, and as many more elsewhere
+        // dS/S = −λx · dx/x, so every ulp of x costs |ln u| ulp of u: 2 ulp where u ≥ 1/e, and as many more
+        // elsewhere
         let x = law.inverse_survival(u)?;
         if x.is_normal() {
-            prop_assert!(ulps(law.survival(x), u) as f64 <= 2.0 + 2.0 * u.ln().abs(), "S(S⁻¹({u:?})) = {:?}", law.survival(x));
+            prop_assert!(ulps(law.survival(x), u) as f64 <= 2.0 + 2.0 * u.ln().abs(), "S(S⁻¹({u:?})) = \
+                {:?}", law.survival(x));
         }
         prop_assert_eq!(law.inverse_survival(rate).is_ok(), (0.0..=1.0).contains(&rate));
     }
 
-    /// In f32: 1 − u is exact on the grid k·2⁻²⁴, so the sample is the inverse at u, rounded; never NaN, and infinite only beyond f32.
+    /// In f32: 1 − u is exact on the grid k·2⁻²⁴, so the sample is the inverse at u, rounded; never NaN, and
+    /// infinite only beyond f32.
     #[test]
     fn f32_samples_are_the_inverse(rate in any_number(), word in any::<u64>(), other in any::<u64>()) {
         let Ok(law) = Exponential::new(rate) else { return Ok(()) };
@@ -109,25 +115,30 @@ proptest! {
             let truth = law.inverse_cdf(u(word))?;
             let found = f64::from(sample(word));
             // ln in f32 is off by an ulp at most, and the quotient rounds once more
-            let close = (found - truth).abs() <= 2.0 * f64::from(f32::EPSILON) * truth + f64::from(f32::from_bits(1));
-            prop_assert!(close || found.is_infinite() && truth * (1.0 + 1e-6) > f64::from(f32::MAX), "{found:?}, not {truth:?}");
+            let close = (found - truth).abs() <=
+                2.0 * f64::from(f32::EPSILON) * truth + f64::from(f32::from_bits(1));
+            prop_assert!(close || found.is_infinite() && truth * (1.0 + 1e-6) > f64::from(f32::MAX),
+                "{found:?}, not {truth:?}");
             prop_assert!(u(word) > u(other) || found <= f64::from(sample(other)));
         }
     }
 
     #[test]
-    fn bounces_rise_and_stay_in_range(p in probability(), k in any::<u64>(), small in 0u64..100, u in probability(), v in probability()) {
+    fn bounces_rise_and_stay_in_range(p in probability(), k in any::<u64>(), small in 0u64..100,
+        u in probability(), v in probability()) {
         let Ok(law) = Roulette::new(p) else { return Ok(()) };
         for k in [k, k >> 11, small, 1 << 53, u64::MAX - 1] {
             for next in [k + 1, k.saturating_add(small)] {
                 prop_assert!(law.bounces().cdf(k) <= law.bounces().cdf(next), "cdf({k}), cdf({next})");
-                prop_assert!(law.bounces().survival(k) >= law.bounces().survival(next), "survival({k}), survival({next})");
+                prop_assert!(law.bounces().survival(k) >= law.bounces().survival(next), "survival({k}), \
+                    survival({next})");
                 prop_assert!(law.bounces().pmf(k) >= law.bounces().pmf(next), "pmf({k}), pmf({next})");
             }
             for value in [law.bounces().pmf(k), law.bounces().cdf(k), law.bounces().survival(k)] {
                 prop_assert!((0.0..=1.0).contains(&value));
             }
-            prop_assert!((law.bounces().cdf(k) + law.bounces().survival(k) - 1.0).abs() <= 2.0 * f64::EPSILON);
+            prop_assert!((law.bounces().cdf(k) + law.bounces().survival(k) - 1.0).abs() <=
+                2.0 * f64::EPSILON);
         }
         for (u, v) in [(u, v), (v, u)].into_iter().filter(|(u, v)| u <= v) {
             prop_assert!(law.bounces().quantile(u)? <= law.bounces().quantile(v)?);
@@ -148,16 +159,18 @@ proptest! {
             let cos = direction.cos_theta();
             prop_assert!((0.0..=1.0).contains(&cos) && (cos > 0.0 || u == 1.0));
             prop_assert!((0.0..=1.0 + f64::EPSILON).contains(&direction.sin_theta()));
-            prop_assert!((0.0..=PI / 2.0).contains(&direction.theta()) && (0.0..TAU).contains(&direction.phi()));
+            prop_assert!((0.0..=PI / 2.0).contains(&direction.theta())
+                && (0.0..TAU).contains(&direction.phi()));
             let other = hemisphere.direction_of(w, v)?;
             prop_assert!((u > w) || cos >= other.cos_theta());
             // P(cos θ ≤ c) of the cos θ drawn from u is 1 − u, to the rounding of 1 − u and of the root
             let back = hemisphere.cdf_of_cos_theta(cos);
             prop_assert!(ulps(back, 1.0 - u) <= 2, "{back:?} {u:?}");
-            // u comes back from sin θ or from cos θ, wherever those have digits: sin θ is good to 2 ulp and its square is good to 5,
-            // and beyond the middle to the last place of 1
+            // u comes back from sin θ or from cos θ, wherever those have digits: sin θ is good to 2 ulp and
+            // its square is good to 5, and beyond the middle to the last place of 1
             let [u_back, _] = hemisphere.uniforms_of(&direction)?;
-            prop_assert!(ulps(u_back, u) <= 6 || (u_back - u).abs() <= 4.0 * f64::EPSILON * cos, "{u_back:?} {u:?}");
+            prop_assert!(ulps(u_back, u) <= 6 || (u_back - u).abs() <= 4.0 * f64::EPSILON * cos, "{u_back:?} \
+                {u:?}");
         }
     }
 
@@ -172,9 +185,11 @@ proptest! {
         prop_assert!((0.0..=PI).contains(&direction.theta()) && (0.0..TAU).contains(&direction.phi()));
     }
 
-    /// Points rise with u and v and stay inside, whatever the ends, and a point is drawn with the density that it has.
+    /// Points rise with u and v and stay inside, whatever the ends, and a point is drawn with the density
+    /// that it has.
     #[test]
-    fn points_rise_and_stay_inside(a in any_number(), b in any_number(), u in probability(), v in probability()) {
+    fn points_rise_and_stay_inside(a in any_number(), b in any_number(), u in probability(),
+        v in probability()) {
         let (low, high) = (a.min(b), a.max(b));
         let Ok(rectangle) = Rectangle::new([low, high], [0.0, 1.0 / (high - low)]) else { return Ok(()) };
         let at = |u: f64, v: f64| rectangle.sample(&mut Stream::scripted(&[u, v]));
@@ -187,7 +202,8 @@ proptest! {
 
     #[test]
     fn light_grows_with_albedo_and_with_vertices(
-        rho in probability(), more in probability(), v in probability(), k in 0u64..=1_000_000_000, a in any_number(), w in probability()
+        rho in probability(), more in probability(), v in probability(), k in 0u64..=1_000_000_000,
+            a in any_number(), w in probability()
     ) {
         let (rho, more) = (rho.min(more), rho.max(more));
         if let (Ok(dark), Ok(bright)) = (LightModel::new(rho, v), LightModel::new(more, v)) {
@@ -225,9 +241,11 @@ proptest! {
         prop_assert!((u > v || x <= y) && (v > u || y <= x));
     }
 
-    /// The mean of finite draws lies between the least and the greatest, exactly, however they are merged; intervals hold the mean.
+    /// The mean of finite draws lies between the least and the greatest, exactly, however they are merged;
+    /// intervals hold the mean.
     #[test]
-    fn estimates_stay_in_range(draws in prop::collection::vec(any_number(), 1..700), split in 0usize..700, level in probability()) {
+    fn estimates_stay_in_range(draws in prop::collection::vec(any_number(), 1..700), split in 0usize..700,
+        level in probability()) {
         let (left, right) = draws.split_at(split.min(draws.len()));
         let mut merged = Estimate::from_draws(left);
         merged.merge(&Estimate::from_draws(right));
@@ -245,7 +263,8 @@ proptest! {
             let mean = estimate.mean();
             prop_assert!(least <= mean && mean <= greatest, "{mean:?}");
             if finite.len() == 1 {
-                prop_assert!(estimate.variance().is_none() && estimate.std_error().is_none() && estimate.z(mean).is_none());
+                prop_assert!(estimate.variance().is_none() && estimate.std_error().is_none()
+                    && estimate.z(mean).is_none());
                 continue;
             }
             // s² ≤ (range)²/4 · n/(n − 1)
@@ -254,7 +273,8 @@ proptest! {
             prop_assert!((0.0..=most).contains(&estimate.std_error().unwrap_or(f64::NAN)), "{estimate:?}");
             prop_assert!(estimate.variance().unwrap_or(f64::NAN) >= 0.0);
             match estimate.confidence_interval(level) {
-                Ok([low, high]) => prop_assert!(low <= mean && mean <= high, "{low:?} {mean:?} {high:?} at {level:?}"),
+                Ok([low, high]) => prop_assert!(low <= mean && mean <= high, "{low:?} {mean:?} {high:?} at \
+                    {level:?}"),
                 Err(_) => prop_assert!(level == 0.0 || level == 1.0),
             }
         }
@@ -283,7 +303,8 @@ proptest! {
 
     /// A budget of any bits ends soon, with an estimate or an error.
     #[test]
-    fn any_budget_ends(target in any_number(), max_draws in prop_oneof![0u64..100_000, 0..3u64], draws in 0u64..3, seed in any::<u64>()) {
+    fn any_budget_ends(target in any_number(), max_draws in prop_oneof![0u64..100_000, 0..3u64],
+        draws in 0u64..3, seed in any::<u64>()) {
         let uniform = from_fn(|rng| rng.uniform());
         let run = Run::new(seed).max_draws(max_draws);
         for budget in [Budget::StdError(target), Budget::RelativeError(target), Budget::Draws(draws)] {
@@ -307,7 +328,8 @@ proptest! {
         let value = f / (1.0 / 16.0);
         match estimate(&constant, Budget::Draws(600), seed) {
             Ok(estimate) => prop_assert!(value.is_finite() && estimate.mean() == value),
-            Err(Error::Draw { value: draw, draw: 0, block: 0, .. }) => prop_assert!(!value.is_finite() && !draw.is_finite()),
+            Err(Error::Draw { value: draw, draw: 0, block: 0,
+                .. }) => prop_assert!(!value.is_finite() && !draw.is_finite()),
             Err(other) => prop_assert!(false, "{other}"),
         }
     }
@@ -369,7 +391,8 @@ fn is_a_radiance(value: f64) -> bool {
 proptest! {
     #![proptest_config(config(1_500))]
 
-    /// A scene of any bits is an error that is true, or a room in which every draw of every way is a number, in `f32` too.
+    /// A scene of any bits is an error that is true, or a room in which every draw of every way is a number,
+    /// in `f32` too.
     #[test]
     fn any_scene_is_lit_or_an_error(
         scene in any_scene(), bounces in any_bounces(), seed in any::<u64>(),
@@ -390,7 +413,8 @@ proptest! {
                 let [x, y, z] = scene.point;
                 let faces = Face::ALL.iter().filter(|face| {
                     let [low, high] = face.bounds();
-                    DVec3::from_array(scene.point).cmpge(low).all() && DVec3::from_array(scene.point).cmple(high).all()
+                    DVec3::from_array(scene.point).cmpge(low).all()
+                        && DVec3::from_array(scene.point).cmple(high).all()
                 });
                 let hole = if z == 0.0 { 0.5 } else { scene.light_half_width };
                 prop_assert!(sound && (faces.count() == 0 || x.abs().max(y.abs()) <= hole));
@@ -409,7 +433,8 @@ proptest! {
         if scene.light_half_width < 1.0 {
             let two = room.two_bounces();
             prop_assert_eq!(two.is_some(), p.face() == Face::CubeTop);
-            prop_assert!(two.is_none_or(|two| (0.0..=most * scene.wall_albedo).contains(&two)), "{two:?} of {scene:?}");
+            prop_assert!(two.is_none_or(|two| (0.0..=most * scene.wall_albedo).contains(&two)), "{two:?} of \
+                {scene:?}");
         }
         let paths = match Paths::new(room, bounces, directions, light) {
             Ok(paths) => paths,
@@ -427,20 +452,24 @@ proptest! {
             }
             Err(other) => return Err(TestCaseError::fail(format!("{other}"))),
         };
-        prop_assert!(paths.caution().is_none_or(|caution| !caution.contains("NaN") && !caution.contains("inf ")), "{:?}", paths.caution());
+        prop_assert!(paths.caution().is_none_or(|caution| !caution.contains("NaN")
+            && !caution.contains("inf ")), "{:?}", paths.caution());
         let mut rng = Stream::new(seed, 0);
         let mut draws = [f64::NAN; 40];
         paths.fill(&mut rng, &mut draws);
         let drawn: Vec<f64> = (0..4).map(|_| paths.draw(&mut rng)).collect();
-        prop_assert!(draws.iter().chain(&drawn).all(|draw| *draw >= 0.0 && draw.is_finite()), "{draws:?} {drawn:?} of {paths:?}");
+        prop_assert!(draws.iter().chain(&drawn).all(|draw| *draw >= 0.0 && draw.is_finite()), "{draws:?} \
+            {drawn:?} of {paths:?}");
         match paths.in_f32() {
             Ok(single) => {
                 let mut in_f32 = [f64::NAN; 40];
                 single.fill(&mut rng, &mut in_f32);
-                prop_assert!(in_f32.iter().all(|draw| *draw >= 0.0 && draw.is_finite()), "{in_f32:?} of {single:?}");
+                prop_assert!(in_f32.iter().all(|draw| *draw >= 0.0 && draw.is_finite()), "{in_f32:?} of \
+                    {single:?}");
                 // where every draw finds something, it does in f32
                 let always = |draws: &[f64]| draws.iter().all(|draw| *draw > 0.0);
-                prop_assert!(!always(&draws) || in_f32.iter().any(|draw| *draw > 0.0), "{in_f32:?} of {single:?}");
+                prop_assert!(!always(&draws) || in_f32.iter().any(|draw| *draw > 0.0), "{in_f32:?} of \
+                    {single:?}");
             }
             Err(Error::Parameter { .. }) => {}
             Err(other) => return Err(TestCaseError::fail(format!("{other}"))),
@@ -465,14 +494,17 @@ proptest! {
                 let [low, high] = hit.face().bounds();
                 prop_assert!(hit.position().cmpge(low).all() && hit.position().cmple(high).all(), "{hit:?}");
             }
-            None => prop_assert!(!direction.is_finite() || direction == DVec3::ZERO || from.normal().dot(direction) < 0.0),
+            None => prop_assert!(!direction.is_finite() || direction == DVec3::ZERO
+                || from.normal().dot(direction) < 0.0),
         }
         let to = DVec3::from_array(to);
         prop_assert!(to.is_finite() || !visible(&from, to));
         let corners: Vec<DVec3> = corners.into_iter().map(DVec3::from_array).collect();
-        for (corners, normal) in [(&corners[..], from.normal()), (&corners[..], direction), (&[][..], direction)] {
+        for (corners, normal) in [(&corners[..], from.normal()), (&corners[..], direction), (&[][..],
+            direction)] {
             let p = form_factor(corners, from.position(), normal);
-            let sound = corners.iter().all(|corner| corner.is_finite()) && normal.is_finite() && normal != DVec3::ZERO;
+            let sound = corners.iter().all(|corner| corner.is_finite()) && normal.is_finite()
+                && normal != DVec3::ZERO;
             prop_assert!(if sound { (0.0..=1.0).contains(&p) } else { p.is_nan() }, "{p:?} of {corners:?}");
         }
     }

@@ -1,4 +1,5 @@
-//! What `Estimate` says of draws whose moments are known exactly; the hard cases for rounding are in `nist.rs`.
+//! What `Estimate` says of draws whose moments are known exactly; the hard cases for rounding are in
+//! `nist.rs`.
 
 mod common;
 
@@ -143,8 +144,8 @@ fn an_interval_of_109811_uniform_draws_is_as_wide_as_its_neighbours() {
     assert_relative_eq!(0.5 * (high + low), estimate.mean(), epsilon = 0.0, max_relative = 1e-15);
 }
 
-/// With three normal draws Student's 95 % interval covers exactly 95 %; the normal's would cover 81 %. 20,000 trials: a binomial std error of
-/// 0.154 %, 7 of them 1.08 % (false alarm 2.6e-12).
+/// With three normal draws Student's 95 % interval covers exactly 95 %; the normal's would cover 81 %. 20,000
+/// trials: a binomial std error of 0.154 %, 7 of them 1.08 % (false alarm 2.6e-12).
 #[test]
 fn intervals_cover_what_they_claim_even_for_three_draws() {
     use rand_distr::{Distribution, StandardNormal};
@@ -201,7 +202,8 @@ fn draws_that_are_not_finite_come_back_from_json() {
     assert!(json != wrong && serde_json::from_str::<Estimate>(&wrong).is_err());
 }
 
-/// Merged with itself 64 times, an estimate of one draw has more draws than a `u64` holds: as many as it holds, not 0.
+/// Merged with itself 64 times, an estimate of one draw has more draws than a `u64` holds: as many as it
+/// holds, not 0.
 #[test]
 fn more_draws_than_can_be_counted_stay_the_most() {
     let mut estimate = Estimate::from_draws(&[1.0, 3.0]);
@@ -235,7 +237,8 @@ proptest! {
 
     /// Any finite draws, of any size, in any order of merging: mean inside their range, error bar not NaN.
     #[test]
-    fn any_finite_bits_give_a_mean_in_range(bits in prop::collection::vec(any::<u64>(), 2..40), split in 0usize..40) {
+    fn any_finite_bits_give_a_mean_in_range(bits in prop::collection::vec(any::<u64>(), 2..40),
+        split in 0usize..40) {
         let draws: Vec<f64> = bits.into_iter().map(f64::from_bits).filter(|x| x.is_finite()).collect();
         prop_assume!(draws.len() >= 2);
         let (left, right) = draws.split_at(split.min(draws.len()));
@@ -245,7 +248,8 @@ proptest! {
         let high = draws.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         // the mean of opposite draws is rounding away from 0 by their size
         let slack = 1e-15 * low.abs().max(high.abs());
-        prop_assert!(low - slack <= merged.mean() && merged.mean() <= high + slack, "{} not in {low}..{high}", merged.mean());
+        prop_assert!(low - slack <= merged.mean() && merged.mean() <= high + slack, "{} not in \
+            {low}..{high}", merged.mean());
         prop_assert!(merged.std_error().unwrap() >= 0.0);
         prop_assert!(merged.variance().unwrap() >= 0.0);
     }
@@ -291,7 +295,8 @@ proptest! {
     }
 }
 
-/// z = (mean − truth)/std error, and 0 for a difference that is rounding: up to 8 units of the truth's last place, whatever its size.
+/// z = (mean − truth)/std error, and 0 for a difference that is rounding: up to 8 units of the truth's last
+/// place, whatever its size.
 #[test]
 fn z_counts_std_errors_beyond_rounding() {
     let estimate = Estimate::from_draws(&[1.0, 2.0, 3.0, 4.0]);
@@ -322,8 +327,9 @@ fn z_counts_std_errors_beyond_rounding() {
 proptest! {
     #![proptest_config(common::config(500))]
 
-    /// Draws taken one at a time give the moments of the slice. Each square is rounded to 2⁻⁵² of itself and at most twice what
-    /// is left of it at the end: 8 units in the last place in all, where none is out of range.
+    /// Draws taken one at a time give the moments of the slice. Each square is rounded to 2⁻⁵² of itself and
+    /// at most twice what is left of it at the end: 8 units in the last place in all, where none is out of
+    /// range.
     #[test]
     fn one_at_a_time_is_as_good_as_a_slice(
         words in prop::collection::vec(any::<u32>(), 2..3000),
@@ -331,7 +337,8 @@ proptest! {
         size in prop::sample::select(vec![1.0, 1e-150, 1e-300, 1e250, 1e300]),
         first in prop::sample::select(vec![0.0, 1e3, -1e9]),
     ) {
-        let mut draws: Vec<f64> = words.iter().map(|word| (offset + f64::from(*word) / 4294967296.0) * size).collect();
+        let mut draws: Vec<f64> = words.iter().map(|word|
+            (offset + f64::from(*word) / 4294967296.0) * size).collect();
         draws[0] += first * size;
         prop_assume!(draws.iter().all(|draw| draw.is_finite()));
         let mut pushed = Estimate::new();
@@ -345,7 +352,8 @@ proptest! {
 
     /// One after the other, draws of any size, equal ones too: as merged one by one.
     #[test]
-    fn any_draws_can_be_taken_one_at_a_time(bits in prop::collection::vec(any::<u64>(), 2..60), repeat in 1usize..5) {
+    fn any_draws_can_be_taken_one_at_a_time(bits in prop::collection::vec(any::<u64>(), 2..60),
+        repeat in 1usize..5) {
         let draws = bits.into_iter().map(f64::from_bits).filter(|x| x.is_finite());
         let draws: Vec<f64> = draws.flat_map(|x| std::iter::repeat_n(x, repeat)).collect();
         prop_assume!(draws.len() >= 2);

@@ -1,4 +1,5 @@
-//! One table of all estimators, and what holds for each: filled draws are those drawn one at a time, on placed numbers and on independent ones.
+//! One table of all estimators, and what holds for each: filled draws are those drawn one at a time, on
+//! placed numbers and on independent ones.
 
 mod common;
 
@@ -59,7 +60,8 @@ fn all() -> Vec<(String, Box<dyn Estimator>, f64)> {
     all
 }
 
-/// In parts of any size, and one at a time: to the bit, or for paths side by side to rounding, with as many numbers and evaluations.
+/// In parts of any size, and one at a time: to the bit, or for paths side by side to rounding, with as many
+/// numbers and evaluations.
 #[test]
 fn filling_is_drawing() {
     for (name, estimator, allowed) in all() {

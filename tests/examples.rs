@@ -1,4 +1,5 @@
-//! Every example runs, prints JSON that parses, agrees with its truths, and says clearly what it does not understand.
+//! Every example runs, prints JSON that parses, agrees with its truths, and says clearly what it does not
+//! understand.
 
 mod common;
 
@@ -90,7 +91,8 @@ fn without_seconds(mut row: Value) -> Value {
     row
 }
 
-/// Whether a file may differ from run to run: it holds timings, as the page does, or is a PDF, whose library numbers its objects in the order of a hash map.
+/// Whether a file may differ from run to run: it holds timings, as the page does, or is a PDF, whose library
+/// numbers its objects in the order of a hash map.
 fn changes(name: &str) -> bool {
     name.ends_with(".pdf")
         || name.ends_with(".html")

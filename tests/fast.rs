@@ -6,7 +6,8 @@ use rand::Rng;
 use unbiased::Stream;
 use unbiased::fast::{exp, ln, sin_cos_of_turns};
 
-/// A number of 106 bits as an unevaluated sum (Dekker 1971); by sums and products only, so it shares nothing with the code under test.
+/// A number of 106 bits as an unevaluated sum (Dekker 1971); by sums and products only, so it shares nothing
+/// with the code under test.
 #[derive(Clone, Copy)]
 struct Long(f64, f64);
 
@@ -69,7 +70,8 @@ fn long_ln(x: f64) -> Long {
     Long(guess, 0.0).plus(Long(step, 0.0))
 }
 
-/// −ln(1 − u) for u = k·2⁻⁵³: 300,000 k at either end, one by one, and 1.5 million between, ten thousand of them between any two powers of two. The worst is 0.82 ulp.
+/// −ln(1 − u) for u = k·2⁻⁵³: 300,000 k at either end, one by one, and 1.5 million between, ten thousand of
+/// them between any two powers of two. The worst is 0.82 ulp.
 #[test]
 fn ln_of_every_uniform_number_is_within_1_ulp() {
     const GRID: f64 = (1u64 << 53) as f64;

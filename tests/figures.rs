@@ -1,4 +1,5 @@
-//! The figures of section 4, and what is said of them: paths that can be told apart, values that are what they are called, and rows that own up to having found nothing.
+//! The figures of section 4, and what is said of them: paths that can be told apart, values that are what
+//! they are called, and rows that own up to having found nothing.
 #![cfg(feature = "workbook")]
 
 mod common;
@@ -38,7 +39,8 @@ fn attribute<'a>(tag: &'a str, name: &str) -> &'a str {
     from.split_once('"').unwrap().0
 }
 
-/// Texts of a figure that stand in the middle of their place, and a box about each that is smaller than the ink: its middle, and half its width and height.
+/// Texts of a figure that stand in the middle of their place, and a box about each that is smaller than the
+/// ink: its middle, and half its width and height.
 fn texts(figure: &Figure) -> Vec<(String, [f64; 4])> {
     let tags = figure.svg().split("<text").skip(1);
     let boxes = tags.filter_map(|tag| {
@@ -88,7 +90,8 @@ fn assert_drawn(paths: &Paths, bounces: usize, seed: u64) -> usize {
             for i in 0..=1000 {
                 let t = f64::from(i) / 1000.0;
                 let [x, z] = [0, 1].map(|axis| pair[0][axis] + t * (pair[1][axis] - pair[0][axis]));
-                // a chord of the silhouette between two of the points that the drawing looks at is shorter than 0.03
+                // a chord of the silhouette between two of the points that the drawing looks at is shorter
+                // than 0.03
                 assert!(x.abs() > 0.485 || z > 0.985, "through the cube: {line:?}");
             }
         }
@@ -189,10 +192,13 @@ proptest! {
     ) {
         let face = unbiased::paths::room::Face::ALL[face];
         let [low, high] = face.bounds();
-        let at = |t: [f64; 3]| [low.x + t[0] * (high.x - low.x), low.y + t[1] * (high.y - low.y), low.z + t[2] * (high.z - low.z)];
-        let point = if low.x == high.x { at([0.0, u, v]) } else if low.y == high.y { at([u, 0.0, v]) } else { at([u, v, 0.0]) };
+        let at = |t: [f64; 3]| [low.x + t[0] * (high.x - low.x), low.y + t[1] * (high.y - low.y),
+            low.z + t[2] * (high.z - low.z)];
+        let point = if low.x == high.x { at([0.0, u, v]) } else if low.y == high.y { at([u, 0.0,
+            v]) } else { at([u, v, 0.0]) };
         // under the cube, or on the light
-        let Ok(room) = BoxRoom::new(Scene { point, light_half_width: half_width, ..Scene::default() }) else { return Ok(()) };
+        let Ok(room) = BoxRoom::new(Scene { point, light_half_width: half_width,
+            ..Scene::default() }) else { return Ok(()) };
         for bounces in [2u32, 3] {
             let paths = Paths::new(room, Bounces::Exactly(bounces), Cosine, FindLight::BySampling).unwrap();
             assert_drawn(&paths, bounces as usize, seed);
@@ -200,7 +206,8 @@ proptest! {
     }
 }
 
-/// The worksheet's cumulative values, 0.33502 − 0.31276 (±0.00001 each), and the figure's own 95 % interval, ±0.000012: an alarm that is false has 1e-9. A bias of 0.3 % would be seen.
+/// The worksheet's cumulative values, 0.33502 − 0.31276 (±0.00001 each), and the figure's own 95 % interval,
+/// ±0.000012: an alarm that is false has 1e-9. A bias of 0.3 % would be seen.
 #[test]
 fn the_third_bar_is_what_two_other_programs_found() {
     let figure = paths::figures::radiance_by_bounces(&BoxRoom::new(Scene::default()).unwrap(), 1).unwrap();
@@ -224,7 +231,8 @@ fn bars_are_called_exact_where_they_are() {
     assert_eq!(series(&figure, "estimated").len(), 14);
 }
 
-/// Each root mean square error is of 100 means, so its relative error is 1/√200, 7 %; a reference that is off by a tenth of the truth leaves 10 % at n = 1,024, where there should be 5 %.
+/// Each root mean square error is of 100 means, so its relative error is 1/√200, 7 %; a reference that is off
+/// by a tenth of the truth leaves 10 % at n = 1,024, where there should be 5 %.
 #[test]
 fn all_light_falls_to_its_truth_where_hardly_anything_is_absorbed() {
     let room = BoxRoom::new(Scene { wall_albedo: 0.99, ..Scene::default() }).unwrap();
@@ -287,7 +295,8 @@ fn a_row_in_which_no_path_found_the_light_is_no_answer() {
     }
 }
 
-/// Every text of a figure with a box about it, a little smaller than its ink: its middle, and half its width and height.
+/// Every text of a figure with a box about it, a little smaller than its ink: its middle, and half its width
+/// and height.
 fn boxes(figure: &Figure) -> Vec<(String, [f64; 4])> {
     let narrow = "₀₁₂₃₄₅₆₇₈₉ₒᵢⱼ′⁰¹²³⁴⁵⁶⁷⁸⁹⁻.,|il()1 ";
     let of = |tag: &str| {

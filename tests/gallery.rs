@@ -70,7 +70,8 @@ fn names(diagnosis: &Diagnosis) -> Vec<String> {
     diagnosis.candidates().map(Candidate::name).collect()
 }
 
-// ---- right estimators ------------------------------------------------------------------------------------------
+// ---- right estimators
+// ------------------------------------------------------------------------------------------
 
 fn right() -> Vec<(&'static str, Attempt<'static>)> {
     let roulette = |p: f64| Roulette::new(p).unwrap();
@@ -251,8 +252,8 @@ fn few_draws_of_a_right_estimator_are_never_called_wrong() {
     assert!(runs > 10_000 || common::mutation());
 }
 
-/// What a right estimator may show once in a thousand or a million times, by hand: one hit where ten were due, one
-/// miss where ten were due, and thirty draws whose spread came out small.
+/// What a right estimator may show once in a thousand or a million times, by hand: one hit where ten were
+/// due, one miss where ten were due, and thirty draws whose spread came out small.
 #[test]
 fn rare_luck_is_not_called_wrong() {
     let finding = |question: &str, draws: &[(u32, f64)]| {
@@ -276,7 +277,8 @@ fn rare_luck_is_not_called_wrong() {
     assert!(!is_wrong(off(8.0)) && is_wrong(off(20.0)));
 }
 
-// ---- the gallery ------------------------------------------------------------------------------------------------
+// ---- the gallery
+// ------------------------------------------------------------------------------------------------
 
 #[test]
 fn the_gallery_is_complete_and_in_words() {
@@ -496,7 +498,8 @@ fn ratios_agree_with_the_known_table() {
     assert!(compared >= 194, "{compared}");
 }
 
-// ---- every mistake is refuted and found --------------------------------------------------------------------------
+// ---- every mistake is refuted and found
+// --------------------------------------------------------------------------
 
 /// A range in which the draws of right estimators lie, and most of the wrong ones; upwards unbounded where
 /// samples are.
@@ -624,7 +627,8 @@ fn more_probes_leave_fewer_candidates() {
     assert!(all <= 2.0 && alone >= 2.0 * all);
 }
 
-// ---- two at once --------------------------------------------------------------------------------------------------
+// ---- two at once
+// --------------------------------------------------------------------------------------------------
 
 /// A constant times each mistake. Where the product is what another mistake comes to, or a right estimator,
 /// or another product, no draws can tell.
@@ -659,7 +663,8 @@ fn a_constant_times_a_mistake_is_named() {
         }
     }
     println!(
-        "{runs} products: {named} named first, {single} are a single mistake, {right} right; others {missed:#?}"
+        "{runs} products: {named} named first, {single} are a single mistake, {right} right; others \
+         {missed:#?}"
     );
     assert!(f64::from(named) >= 0.9 * f64::from(runs));
     assert!(missed.len() as f64 <= 0.02 * f64::from(runs));
@@ -697,7 +702,8 @@ fn a_constant_alone_is_named_and_an_unknown_mistake_is_not() {
     }
 }
 
-// ---- what a diagnosis says ----------------------------------------------------------------------------------------
+// ---- what a diagnosis says
+// ----------------------------------------------------------------------------------------
 
 #[test]
 fn a_counterexample_can_be_worked_out_by_hand() {
@@ -838,7 +844,8 @@ fn skewness_is_known() {
     assert!(measured.skewness.is_nan() && measured.never_varied());
 }
 
-// ---- bad input -------------------------------------------------------------------------------------------------
+// ---- bad input
+// -------------------------------------------------------------------------------------------------
 
 #[test]
 fn bad_input_is_an_error() {

@@ -2,8 +2,8 @@
 //! numbers they were drawn from.
 //!
 //! False alarms: every test of a distribution uses the Dvoretzky–Kiefer–Wolfowitz–Massart inequality at α =
-//! 1e-12, which holds for every n and every continuous cdf, so the 30 of them together stay below 3e-11 a run.
-//! All else is arithmetic.
+//! 1e-12, which holds for every n and every continuous cdf, so the 30 of them together stay below 3e-11 a
+//! run. All else is arithmetic.
 
 mod common;
 
@@ -83,7 +83,8 @@ fn cos_theta_and_phi_have_their_distributions() {
 
 #[test]
 fn cos_theta_and_phi_are_independent() {
-    // cos θ has the same distribution in every eighth of the circle; within one, 0.0107 off is caught for sure
+    // cos θ has the same distribution in every eighth of the circle; within one, 0.0107 off is caught for
+    // sure
     for hemisphere in Hemisphere::ALL {
         let mut eighths: [Vec<f64>; 8] = Default::default();
         for direction in draw(hemisphere, 302) {
@@ -321,7 +322,8 @@ proptest! {
     #![proptest_config(common::config(2048))]
 
     #[test]
-    fn every_direction_has_unit_length(u in 0.0..=1.0f64, v in 0.0..=1.0f64, cos in -1.0..=1.0f64, phi in -1e6..1e6f64) {
+    fn every_direction_has_unit_length(u in 0.0..=1.0f64, v in 0.0..=1.0f64, cos in -1.0..=1.0f64,
+        phi in -1e6..1e6f64) {
         for direction in [
             Hemisphere::Uniform.direction_of(u, v).unwrap(),
             Hemisphere::Cosine.direction_of(u, v).unwrap(),
@@ -336,7 +338,8 @@ proptest! {
         for hemisphere in Hemisphere::ALL {
             let tiny = u * 2f64.powi(-power);
             for u in [u, tiny, 1.0 - tiny] {
-                let [u_back, v_back] = hemisphere.uniforms_of(&hemisphere.direction_of(u, v).unwrap()).unwrap();
+                let [u_back, v_back] = hemisphere.uniforms_of(&hemisphere.direction_of(u,
+                    v).unwrap()).unwrap();
                 // sin θ is good to 3 ulp, its square to 7; near the horizon u's last digit is cos² θ's
                 let close = if u < 0.5 { 8.0 * u } else { 1.0 };
                 prop_assert!((u_back - u).abs() <= close * f64::EPSILON, "{u} {u_back}");
@@ -367,7 +370,8 @@ proptest! {
                 prop_assert_eq!(hemisphere.uniforms_of(&direction).is_ok(), direction.cos_theta() >= 0.0);
             }
         } else {
-            prop_assert!(!(x.is_finite() && y.is_finite() && z.is_finite()) || (x == 0.0 && y == 0.0 && z == 0.0));
+            prop_assert!(!(x.is_finite() && y.is_finite() && z.is_finite()) || (x == 0.0 && y == 0.0
+                && z == 0.0));
         }
         if let Ok(direction) = Direction::polar(x, y) {
             prop_assert!(ulps_off_unit(&direction) <= 2.0);

@@ -18,7 +18,8 @@ fn exponential(rate: f64) -> Exponential {
     Exponential::new(rate).unwrap()
 }
 
-/// Half the width of the band around an empirical cdf that holds the true one with probability 1 − 1e-12 (DKW–Massart, valid for every n).
+/// Half the width of the band around an empirical cdf that holds the true one with probability 1 − 1e-12
+/// (DKW–Massart, valid for every n).
 fn dkw(n: usize) -> f64 {
     ((2.0f64 / 1e-12).ln() / (2.0 * n as f64)).sqrt()
 }
@@ -107,8 +108,9 @@ fn samples_have_the_cdf() {
     }
 }
 
-/// Mean 1/λ with variance 1/λ²; (X − 1/λ)² has mean 1/λ² and variance 8/λ⁴. 7 std errors at n = 10⁷ are a false alarm of 2.6e-12 (the
-/// squares are skewed, but at this n their mean is normal to well beyond 7) and catch a bias of 0.22 % in the mean, 0.63 % in the variance.
+/// Mean 1/λ with variance 1/λ²; (X − 1/λ)² has mean 1/λ² and variance 8/λ⁴. 7 std errors at n = 10⁷ are a
+/// false alarm of 2.6e-12 (the squares are skewed, but at this n their mean is normal to well beyond 7) and
+/// catch a bias of 0.22 % in the mean, 0.63 % in the variance.
 #[test]
 fn mean_and_variance_of_the_samples_are_exact() {
     for rate in RATES {
@@ -122,7 +124,8 @@ fn mean_and_variance_of_the_samples_are_exact() {
     }
 }
 
-/// f/p with f = p e^(−x): E = ∫ p² … has the closed form λ/2 for f = p². Drawn from p the ratio is p(X), whose mean is λ/2 and variance λ²/12.
+/// f/p with f = p e^(−x): E = ∫ p² … has the closed form λ/2 for f = p². Drawn from p the ratio is p(X),
+/// whose mean is λ/2 and variance λ²/12.
 #[test]
 fn it_is_a_density_to_draw_ratios_from() {
     for rate in RATES {
@@ -187,7 +190,8 @@ fn drawing_is_the_inverse_cdf_of_the_streams_uniform_number() {
     }
 }
 
-/// Against the library's logarithm, at most 3 ulp apart (1 of the logarithm, ½ each of 1/λ, product, quotient and library).
+/// Against the library's logarithm, at most 3 ulp apart (1 of the logarithm, ½ each of 1/λ, product, quotient
+/// and library).
 #[test]
 fn filling_is_the_formula_to_rounding() {
     for rate in [0.37, 1.0, 1e-300, 1e300, 5e-308, 1e308, f64::MIN_POSITIVE, f64::MAX] {
@@ -239,8 +243,8 @@ fn is_generalised_inverse(cdf: impl Fn(f64) -> f64, x: f64, u: f64) -> bool {
 
 const PROBABILITIES: [f64; 11] = [1e-12, 1e-6, 0.001, 0.05, 0.2, 0.5, 0.7, 0.9, 0.99, 0.999_999, 1.0 - 1e-12];
 
-/// Against the definition at every probability, and against statrs' own quantiles where those are good: in the far tail its Gamma stops at
-/// 1e-9 where the quantile is 1e-20, elsewhere they hold to about 1e-9.
+/// Against the definition at every probability, and against statrs' own quantiles where those are good: in
+/// the far tail its Gamma stops at 1e-9 where the quantile is 1e-20, elsewhere they hold to about 1e-9.
 #[test]
 fn any_smooth_cdf_is_inverted() {
     let normal = Normal::new(-1.3, 2.5).unwrap();
@@ -367,8 +371,8 @@ const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 type Law = (fn(f64) -> f64, [f64; 2]);
 
-/// Laws as one writes them down, which are ∞·0 or ∞/∞ at the largest numbers: Gamma of shape 2 and 3, the logistic one
-/// twice, and a Gamma to the left.
+/// Laws as one writes them down, which are ∞·0 or ∞/∞ at the largest numbers: Gamma of shape 2 and 3, the
+/// logistic one twice, and a Gamma to the left.
 const NAN_FAR_OUT: [Law; 5] = [
     (|x| 1.0 - (1.0 + x) * (-x).exp(), [0.0, f64::INFINITY]),
     (|x| 1.0 - (1.0 + x + 0.5 * x * x) * (-x).exp(), [0.0, f64::INFINITY]),
@@ -553,7 +557,8 @@ fn an_inversion_takes_few_evaluations() {
 
 // ---- the classic mistakes, written out and refused ----
 
-/// An estimator of the mean 1/λ that makes a mistake, the ratio of its mean to 1/λ, and a bound on its std deviation in units of 1/λ.
+/// An estimator of the mean 1/λ that makes a mistake, the ratio of its mean to 1/λ, and a bound on its std
+/// deviation in units of 1/λ.
 fn mistakes(rate: f64) -> Vec<(&'static str, Box<dyn Estimator>, f64, f64)> {
     let of = |f: fn(f64, f64) -> f64| -> Box<dyn Estimator> {
         Box::new(from_fn(move |rng| f(rng.uniform(), rate)))
@@ -573,7 +578,8 @@ fn mistakes(rate: f64) -> Vec<(&'static str, Box<dyn Estimator>, f64, f64)> {
     ]
 }
 
-/// n = 10⁶: 7 std errors are 0.7 % of 1/λ, and the nearest mistake at λ = 0.37 is 10 % off. Each one's mean is where theory puts it.
+/// n = 10⁶: 7 std errors are 0.7 % of 1/λ, and the nearest mistake at λ = 0.37 is 10 % off. Each one's mean
+/// is where theory puts it.
 #[test]
 fn classic_mistakes_are_refused_and_have_the_ratio_that_theory_predicts() {
     let (rate, n) = (0.37, 1_000_000);
@@ -596,9 +602,10 @@ fn at_rate_1_multiplying_by_lambda_cannot_be_seen() {
     assert!(found.z(1.0).unwrap().abs() <= 7.0);
 }
 
-/// The 95 % interval of 1,000 draws covers 1/λ in 94–96 % of 10,000 seeds. Exponential draws are skewed (skewness 2), which lowers the
-/// coverage by about 0.2 % at this n (Edgeworth: 2·φ(z)z… ·γ²/n); the binomial std error is 0.22 %, so 94 % is 4.5 of them away: at the
-/// fixed seed it holds for certain, for fresh seeds it fails with probability 1e-5, so the bound is 7 std errors there.
+/// The 95 % interval of 1,000 draws covers 1/λ in 94–96 % of 10,000 seeds. Exponential draws are skewed
+/// (skewness 2), which lowers the coverage by about 0.2 % at this n (Edgeworth: 2·φ(z)z… ·γ²/n); the binomial
+/// std error is 0.22 %, so 94 % is 4.5 of them away: at the fixed seed it holds for certain, for fresh seeds
+/// it fails with probability 1e-5, so the bound is 7 std errors there.
 #[test]
 fn intervals_cover_the_mean() {
     let exponential = exponential(0.37);
@@ -635,7 +642,8 @@ proptest! {
         }
     }
 
-    /// F is monotone, and F(F⁻¹(u)) = u to within rounding of x times the condition number λx p(x)/…: a few ulp of u.
+    /// F is monotone, and F(F⁻¹(u)) = u to within rounding of x times the condition number λx p(x)/…: a few
+    /// ulp of u.
     #[test]
     fn the_inverse_inverts(rate in 1e-3..1e3f64, u in 0.0..1.0f64, v in 0.0..1.0f64) {
         let exponential = exponential(rate);
@@ -647,15 +655,18 @@ proptest! {
         prop_assert!((exponential.cdf(x) + exponential.survival(x) - 1.0).abs() <= 3e-16);
     }
 
-    /// The rest of the density above x is its survival, by quadrature: ∫ p over [x, x + 1/λ] (Gauss–Legendre, 5 points on 4 pieces).
+    /// The rest of the density above x is its survival, by quadrature: ∫ p over [x, x + 1/λ] (Gauss–Legendre,
+    /// 5 points on 4 pieces).
     #[test]
     fn the_density_integrates_to_the_cdf(rate in 0.01..100.0f64, x in 0.0..3.0f64) {
         let exponential = exponential(rate);
         let (from, to) = (x / rate, (x + 1.0) / rate);
         const NODES: [(f64, f64); 5] = [
-            (-0.906_179_845_938_664, 0.236_926_885_056_189_08), (-0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
+            (-0.906_179_845_938_664, 0.236_926_885_056_189_08), (-0.538_469_310_105_683_1,
+                0.478_628_670_499_366_47),
             (0.0, 0.568_888_888_888_888_9),
-            (0.538_469_310_105_683_1, 0.478_628_670_499_366_47), (0.906_179_845_938_664, 0.236_926_885_056_189_08),
+            (0.538_469_310_105_683_1, 0.478_628_670_499_366_47), (0.906_179_845_938_664,
+                0.236_926_885_056_189_08),
         ];
         let h = (to - from) / 8.0;
         let integral: f64 = (0..4).flat_map(|piece| NODES.map(|(node, weight)| {
@@ -698,7 +709,8 @@ proptest! {
     ) {
             steps.sort_by(|a, b| a.0.total_cmp(&b.0));
         let total: f64 = steps.iter().map(|(_, weight)| weight).sum();
-        let cdf = |x: f64| (steps.iter().filter(|(at, _)| *at <= x).map(|(_, weight)| weight).sum::<f64>() / total).min(1.0);
+        let cdf = |x: f64| (steps.iter().filter(|(at, _)| *at <= x).map(|(_,
+            weight)| weight).sum::<f64>() / total).min(1.0);
         let inversion = Inversion::new(cdf, [f64::NEG_INFINITY, f64::INFINITY]).unwrap();
         let x = inversion.inverse_cdf(u).unwrap();
         if u > 0.0 {
@@ -710,7 +722,8 @@ proptest! {
     }
 
     #[test]
-    fn any_support_and_probability_give_a_value_or_an_error(low in any::<u64>(), high in any::<u64>(), u in any::<u64>()) {
+    fn any_support_and_probability_give_a_value_or_an_error(low in any::<u64>(), high in any::<u64>(),
+        u in any::<u64>()) {
         let (low, high, u) = (f64::from_bits(low), f64::from_bits(high), f64::from_bits(u));
         let normal = Normal::standard();
         if let Ok(inversion) = Inversion::new(|x| normal.cdf(x), [low, high])
@@ -743,8 +756,8 @@ fn stuck_generators_give_finite_samples() {
     }
 }
 
-/// statrs' Gamma law panics where βx overflows, as it does at the largest `f64`: no cdf is asked that far out, but where
-/// the support begins there.
+/// statrs' Gamma law panics where βx overflows, as it does at the largest `f64`: no cdf is asked that far
+/// out, but where the support begins there.
 #[test]
 fn a_cdf_that_panics_far_out_is_inverted() {
     let gamma = Gamma::new(2.5, 3.0).unwrap();

@@ -2,9 +2,9 @@
 //! classic mistakes with the ratios that give them away.
 //!
 //! False alarms. Means and variances of bounded draws use Bernstein's inequality with the exact variance (α =
-//! 1e-13), distributions the Dvoretzky–Kiefer–Wolfowitz–Massart one (1e-12), both valid for every n; the means
-//! of the mistakes 7.5 std errors (6.4e-14, their draws being bounded and n = 4e5). They are 300, 50 and 120:
-//! together below 1e-10 a run.
+//! 1e-13), distributions the Dvoretzky–Kiefer–Wolfowitz–Massart one (1e-12), both valid for every n; the
+//! means of the mistakes 7.5 std errors (6.4e-14, their draws being bounded and n = 4e5). They are 300, 50
+//! and 120: together below 1e-10 a run.
 
 mod common;
 
@@ -17,8 +17,8 @@ use unbiased::lambertian::hemisphere::{Direction, Hemisphere};
 use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
 use unbiased::{Budget, Density, Error, Estimate, Estimator, Stream, estimate, from_fn};
 
-/// How far the mean of n draws with this variance, none further than `reach` from their mean, may lie from it:
-/// with probability 1 − 1e-13, no further (Bernstein). About 7.8 σ/√n.
+/// How far the mean of n draws with this variance, none further than `reach` from their mean, may lie from
+/// it: with probability 1 − 1e-13, no further (Bernstein). About 7.8 σ/√n.
 fn band(draws: u64, variance: f64, reach: f64) -> f64 {
     let (n, l) = (draws as f64, (2.0f64 / 1e-13).ln());
     let bounded = l * reach / 3.0;
@@ -36,8 +36,8 @@ fn integral(f: impl Fn(f64) -> f64, high: f64) -> f64 {
     (-384..=384).map(node).sum::<f64>() * STEP * high
 }
 
-/// E (X − centre)^j of one draw X under cos^a θ, by quadrature over y = −ln cos θ, in which nothing is singular:
-/// X = k e^(−by), and y has the density m e^(−dy).
+/// E (X − centre)^j of one draw X under cos^a θ, by quadrature over y = −ln cos θ, in which nothing is
+/// singular: X = k e^(−by), and y has the density m e^(−dy).
 fn power_moment(hemisphere: Hemisphere, a: f64, albedo: f64, centre: f64, j: i32) -> f64 {
     let (k, b, m, d) = match hemisphere {
         Hemisphere::Uniform => (2.0 * albedo, a + 1.0, 1.0, 1.0),
@@ -282,7 +282,8 @@ const GOLDEN: [u64; 4] = [0x3fc105c92b99882a, 0x3fd0b505fc2fca9b, 0x3fafcf28abaa
 /// Where a light shines: cos θ, and φ/2π.
 type Sky = fn(f64, f64) -> f64;
 
-/// The five lights, each with ∫ f_r L_i cos θ dω for ρ = 1. The last two tell one side of the sky from the other.
+/// The five lights, each with ∫ f_r L_i cos θ dω for ρ = 1. The last two tell one side of the sky from the
+/// other.
 const SKIES: [(&str, Sky, f64); 5] = [
     ("1", |_, _| 1.0, 1.0),
     ("cos θ", |c, _| c, 2.0 / 3.0),
@@ -461,13 +462,14 @@ fn second_moments_tell_mistakes_of_equal_means_apart() {
     }
 }
 
-/// The 95 % interval covers the truth in 94–96 % of 10,000 seeds, from the n on that is given with each light. Skewness γ costs
-/// 0.25 γ²/n of it (Edgeworth): 1,000 draws do for γ < 4, but under the ring of width 0.1 a cosine draw is ρ once in
-/// a hundred times (γ = 9.8) and needs 10,000, and under cos^(−½) θ it has no fourth moment (γ = 7.1) and gets 4,000. A constant
-/// light is left out for cosine: its interval is a single point.
+/// The 95 % interval covers the truth in 94–96 % of 10,000 seeds, from the n on that is given with each
+/// light. Skewness γ costs 0.25 γ²/n of it (Edgeworth): 1,000 draws do for γ < 4, but under the ring of width
+/// 0.1 a cosine draw is ρ once in a hundred times (γ = 9.8) and needs 10,000, and under cos^(−½) θ it has no
+/// fourth moment (γ = 7.1) and gets 4,000. A constant light is left out for cosine: its interval is a single
+/// point.
 ///
-/// The share's own std error is 0.22 %, so at the fixed seed the bounds hold for certain, and fresh seeds are given
-/// 0.6 % for skewness and 7.5 std errors (6.4e-14 each).
+/// The share's own std error is 0.22 %, so at the fixed seed the bounds hold for certain, and fresh seeds are
+/// given 0.6 % for skewness and 7.5 std errors (6.4e-14 each).
 #[test]
 fn intervals_cover_the_truth() {
     let room = if std::env::var_os("UNBIASED_SEED").is_some() { 0.0224 } else { 0.01 };
@@ -533,7 +535,8 @@ proptest! {
     fn closed_forms_are_the_integrals(a in -1.9..20.0f64, albedo in 0.01..=1.0f64, width in 0.001..=1.0f64) {
         let surface = Lambertian::new(albedo).unwrap();
         let (power, ring) = (CosinePower::new(a).unwrap(), RingLight::new(width).unwrap());
-        // ∫∫ ρ/π cos^a θ cos θ sin θ dθ dφ, with θ counted from the horizon, where cos^(a+1) θ may be singular
+        // ∫∫ ρ/π cos^a θ cos θ sin θ dθ dφ, with θ counted from the horizon, where cos^(a+1) θ may be
+        // singular
         let reflected = integral(|t| TAU * albedo / PI * t.sin().powf(a + 1.0) * t.cos(), FRAC_PI_2);
         prop_assert!((power.reflected(surface) - reflected).abs() <= 1e-11 * reflected);
         let reflected = integral(|c| TAU * albedo / PI * c, width);
@@ -544,7 +547,8 @@ proptest! {
             if a > least + 1e-3 {
                 let quadrature = power_moment(hemisphere, a, albedo, mean, 2);
                 let close = 1e-12 * variance + 1e-14 * mean * variance.sqrt();
-                prop_assert!((variance - quadrature).abs() <= close, "{hemisphere:?} {a}: {variance} {quadrature}");
+                prop_assert!((variance - quadrature).abs() <= close, "{hemisphere:?} {a}: {variance} \
+                    {quadrature}");
             }
             let (mean, variance) = (ring.reflected(surface), ring.variance(surface, hemisphere));
             let quadrature = ring_moment(hemisphere, width, albedo, mean, 2);
@@ -582,7 +586,8 @@ proptest! {
         for albedo in [albedo, f64::from_bits(bits[0] % 1f64.to_bits()), 0.0, 1.0] {
             let Ok(surface) = Lambertian::new(albedo) else { continue };
             let mut lights: Vec<Box<dyn Light>> = Vec::new();
-            for x in [x, f64::from_bits(bits[1] % 1f64.to_bits()), -2.0 + f64::from_bits(bits[1] % 2f64.to_bits())] {
+            for x in [x, f64::from_bits(bits[1] % 1f64.to_bits()),
+                -2.0 + f64::from_bits(bits[1] % 2f64.to_bits())] {
                 lights.extend(CosinePower::new(x).map(|light| Box::new(light) as Box<dyn Light>));
                 lights.extend(RingLight::new(x).map(|light| Box::new(light) as Box<dyn Light>));
             }
@@ -617,16 +622,20 @@ proptest! {
         let uniform = CosinePower::new(a_uniform).unwrap();
         let cosine = CosinePower::new(a_cosine).unwrap();
         let ring = RingLight::new(width).unwrap();
-        // the light is at most 1 where it is drawn by cosine, and cos^(a+1) θ at most 1 where it is drawn uniformly
-        let exact = |light: &dyn Light, hemisphere| (light.reflected(surface), light.variance(surface, hemisphere));
+        // the light is at most 1 where it is drawn by cosine, and cos^(a+1) θ at most 1 where it is drawn
+        // uniformly
+        let exact = |light: &dyn Light, hemisphere| (light.reflected(surface), light.variance(surface,
+            hemisphere));
         let (mean, variance) = exact(&uniform, Hemisphere::Uniform);
         let fourth = power_moment(Hemisphere::Uniform, a_uniform, albedo, mean, 4);
         is_exact(&surface.uniform_estimator(|w| uniform.incoming(w)), mean, variance, fourth, 2.0 * albedo)?;
-        is_exact(&surface.estimator(|w| uniform.incoming(w), Hemisphere::Uniform), mean, variance, fourth, 2.0 * albedo)?;
+        is_exact(&surface.estimator(|w| uniform.incoming(w), Hemisphere::Uniform), mean, variance, fourth,
+            2.0 * albedo)?;
         let (mean, variance) = exact(&cosine, Hemisphere::Cosine);
         let fourth = power_moment(Hemisphere::Cosine, a_cosine, albedo, mean, 4);
         is_exact(&surface.cosine_estimator(|w| cosine.incoming(w)), mean, variance, fourth, albedo)?;
-        is_exact(&surface.estimator(|w| cosine.incoming(w), Hemisphere::Cosine), mean, variance, fourth, albedo)?;
+        is_exact(&surface.estimator(|w| cosine.incoming(w), Hemisphere::Cosine), mean, variance, fourth,
+            albedo)?;
         let (mean, variance) = exact(&ring, Hemisphere::Uniform);
         let fourth = ring_moment(Hemisphere::Uniform, width, albedo, mean, 4);
         is_exact(&surface.uniform_estimator(|w| ring.incoming(w)), mean, variance, fourth, 2.0 * albedo)?;
@@ -644,7 +653,8 @@ proptest! {
         let light = |direction: &Direction| power.incoming(direction);
         let uniform: Box<dyn Estimator> = Box::new(surface.uniform_estimator(light));
         let cosine: Box<dyn Estimator> = Box::new(surface.cosine_estimator(light));
-        for (estimator, k, b, power_of_cdf) in [(uniform, 2.0 * albedo, a + 1.0, 1.0), (cosine, albedo, a, 2.0)] {
+        for (estimator, k, b, power_of_cdf) in [(uniform, 2.0 * albedo, a + 1.0, 1.0), (cosine, albedo, a,
+            2.0)] {
             prop_assume!(b.abs() > 1e-3); // all draws alike to rounding
             let mut draws = vec![0.0; 100_000];
             estimator.fill(&mut Stream::new(common::seed(340), 0), &mut draws);
@@ -661,7 +671,8 @@ proptest! {
     }
 }
 
-/// A direction along the surface carries no light to it, not even where the light grows beyond all bounds there.
+/// A direction along the surface carries no light to it, not even where the light grows beyond all bounds
+/// there.
 #[test]
 fn along_the_surface_nothing_arrives() {
     struct Along;

@@ -1,7 +1,9 @@
-//! Moments of NIST's StRD data, of draws far from 0 and of 10⁹ draws, against the exact moments of the `f64` that they are.
+//! Moments of NIST's StRD data, of draws far from 0 and of 10⁹ draws, against the exact moments of the `f64`
+//! that they are.
 //!
-//! `data/nist/` holds the sets and what can be reached. The log relative error (LRE) is the number of right digits,
-//! −log₁₀(|x − c|/|c|), at most 15. Exact moments come from integers: every draw is a multiple of a power of two.
+//! `data/nist/` holds the sets and what can be reached. The log relative error (LRE) is the number of right
+//! digits, −log₁₀(|x − c|/|c|), at most 15. Exact moments come from integers: every draw is a multiple of a
+//! power of two.
 
 mod common;
 
@@ -146,7 +148,8 @@ proptest! {
     #![proptest_config(common::config(200))]
 
     #[test]
-    fn merging_in_any_tree_shape_loses_nothing(words in prop::collection::vec(any::<usize>(), 2000), leaf in 1usize..100) {
+    fn merging_in_any_tree_shape_loses_nothing(words in prop::collection::vec(any::<usize>(), 2000),
+        leaf in 1usize..100) {
         for (name, file) in SETS {
             let draws = data(file);
             let lre = Exact::of(&draws).lre(&tree(&draws, &mut words.iter().copied(), leaf));

@@ -1,4 +1,5 @@
-//! The notebooks are true: their cells compile and run in order as one program, and print what is stored in them. No Jupyter is needed.
+//! The notebooks are true: their cells compile and run in order as one program, and print what is stored in
+//! them. No Jupyter is needed.
 //!
 //! All of them are compiled by one call of rustc, against the library that this very test is linked with.
 
@@ -110,8 +111,8 @@ fn read(path: &Path) -> Notebook {
 
 /// A cell as statements: the kernel's own commands dropped, and what it ends in shown.
 ///
-/// The last statement begins at the last line that is neither indented nor a closing bracket; it is a value to be shown where it ends neither in `;` nor, unless it is
-/// a block, in `}`.
+/// The last statement begins at the last line that is neither indented nor a closing bracket; it is a value
+/// to be shown where it ends neither in `;` nor, unless it is a block, in `}`.
 fn statements(cell: &str) -> String {
     let lines: Vec<&str> = cell.lines().filter(|line| !line.starts_with(':')).collect();
     let begins = |line: &&str| line.starts_with(|c: char| !c.is_whitespace() && !")]}".contains(c));
@@ -125,7 +126,8 @@ fn function(name: &str, body: &str) -> String {
     format!("fn {name}() -> Result<(), Box<dyn std::error::Error>> {{\n{body}\nOk(())\n}}\n")
 }
 
-/// One's own estimators, to be written into the marked cells: right, and wrong, with what is said of the wrong one.
+/// One's own estimators, to be written into the marked cells: right, and wrong, with what is said of the
+/// wrong one.
 const TURNS: [(char, &str, &str, &str); 5] = [
     ('1', "-(1.0 - rng.uniform()).ln() / p.rate", "-(1.0 - rng.uniform()).ln() * p.rate", "multiplied by λ"),
     (

@@ -1,4 +1,5 @@
-//! Do the workbook's texts follow its parameters? One set of parameters in statement, hint, closed form, why and wrong answers.
+//! Do the workbook's texts follow its parameters? One set of parameters in statement, hint, closed form, why
+//! and wrong answers.
 //!
 //! Nothing here is random.
 
@@ -54,7 +55,8 @@ fn other(name: &str) -> f64 {
     }
 }
 
-/// Each parameter alone: its new value is in the texts that had the old one, and the old one in none that changed.
+/// Each parameter alone: its new value is in the texts that had the old one, and the old one in none that
+/// changed.
 #[test]
 fn no_default_is_left_in_a_text_once_it_is_changed() {
     let mut told = BTreeSet::new();
@@ -100,7 +102,8 @@ fn no_default_is_left_in_a_text_once_it_is_changed() {
     }
 }
 
-/// What is written outside « and » holds for every parameter: no default and no answer at the defaults is in it.
+/// What is written outside « and » holds for every parameter: no default and no answer at the defaults is in
+/// it.
 #[test]
 fn templates_hold_no_defaults() {
     for question in questions() {

@@ -1,12 +1,17 @@
-//! Section 4's paths, held to a ladder of truths: the furnace, direct light, two bounces, the balance of energy, every way against every other.
+//! Section 4's paths, held to a ladder of truths: the furnace, direct light, two bounces, the balance of
+//! energy, every way against every other.
 //!
 //! # What a test catches
-//! Where a draw is a function of a few numbers, these are put in: Gauss's nodes where it is smooth, which leaves rounding, and two random points in each
-//! of very many cells where it has jumps, whose differences give the error bar. Such a bar, and that of plain draws, may be missed by 8 std errors (1.2e-15, two-sided); a
-//! bias of 11 is caught in all runs but one in a thousand. Every comparison with an error bar prints the bias that it would catch, and fails if that is more than 1e-3 of the truth:
-//! direct light, shadows, two bounces (the light sampled or found by chance; paths one by one and side by side), the furnace without a limit, the balance of energy (faces that emit, and the lamp
-//! alone), the worksheet's cumulative values, and every way against all others together, whose error is part of the 1e-3. What roulette ends is seen as a part of all light, what p itself emits included. About 100 comparisons:
-//! 1.2e-13 a run. With `UNBIASED_MUTATION` the cumulative values catch 5e-3.
+//! Where a draw is a function of a few numbers, these are put in: Gauss's nodes where it is smooth, which
+//! leaves rounding, and two random points in each of very many cells where it has jumps, whose differences
+//! give the error bar. Such a bar, and that of plain draws, may be missed by 8 std errors (1.2e-15,
+//! two-sided); a bias of 11 is caught in all runs but one in a thousand. Every comparison with an error bar
+//! prints the bias that it would catch, and fails if that is more than 1e-3 of the truth: direct light,
+//! shadows, two bounces (the light sampled or found by chance; paths one by one and side by side), the
+//! furnace without a limit, the balance of energy (faces that emit, and the lamp alone), the worksheet's
+//! cumulative values, and every way against all others together, whose error is part of the 1e-3. What
+//! roulette ends is seen as a part of all light, what p itself emits included. About 100 comparisons: 1.2e-13
+//! a run. With `UNBIASED_MUTATION` the cumulative values catch 5e-3.
 
 mod common;
 
@@ -37,7 +42,8 @@ fn paths(scene: Scene, bounces: Bounces, (directions, light): (Hemisphere, FindL
     Paths::new(room(scene), bounces, directions, light).unwrap()
 }
 
-// ---- estimates with error bars -------------------------------------------------------------------------------------
+// ---- estimates with error bars
+// -------------------------------------------------------------------------------------
 
 /// A mean and its standard error.
 #[derive(Debug, Clone, Copy)]
@@ -72,7 +78,8 @@ fn plain(estimator: &impl Estimator, draws: u64, seed: u64) -> Found {
     estimate(estimator, Budget::Draws(draws), common::seed(seed)).unwrap().into()
 }
 
-/// The cells of the unit cube of d dimensions, cut into `side` on each: those whose last number is in the n-th part. The lowest corner of each, in cells.
+/// The cells of the unit cube of d dimensions, cut into `side` on each: those whose last number is in the
+/// n-th part. The lowest corner of each, in cells.
 fn cells(dimensions: u32, side: u64, part: u64) -> impl Iterator<Item = [f64; 4]> {
     let last = dimensions as usize - 1;
     let mut corner = [0.0; 4];
@@ -96,7 +103,8 @@ fn over_cells(parts: &[[f64; 2]], cells: u64) -> Found {
     Found { mean: sum / cells as f64, std_error: squares.sqrt() / cells as f64 }
 }
 
-/// Two random points in each of `side`ᵈ cells of the unit cube of d dimensions, of whose numbers a draw is a function.
+/// Two random points in each of `side`ᵈ cells of the unit cube of d dimensions, of whose numbers a draw is a
+/// function.
 fn in_cells(estimator: &impl Estimator, dimensions: u32, side: u64, seed: u64) -> Found {
     let d = dimensions as usize;
     let parts: Vec<[f64; 2]> = (0..side)
@@ -210,7 +218,8 @@ fn gauss(n: usize) -> Vec<(f64, f64)> {
     (0..n).map(node).collect()
 }
 
-// ---- truths by other means -----------------------------------------------------------------------------------------
+// ---- truths by other means
+// -----------------------------------------------------------------------------------------
 
 /// Howell's B-3, an element under the corner of a parallel rectangle a × b at the distance c; odd in a and b.
 fn parallel(a: f64, b: f64, c: f64) -> f64 {
@@ -219,7 +228,8 @@ fn parallel(a: f64, b: f64, c: f64) -> f64 {
     (x / sx * (y / sx).atan() + y / sy * (x / sy).atan()) / (2.0 * PI)
 }
 
-/// Howell's B-4, an element on a plane at right angles to the rectangle's, which lies c above the element and reaches from the element's plane to a; odd in b.
+/// Howell's B-4, an element on a plane at right angles to the rectangle's, which lies c above the element and
+/// reaches from the element's plane to a; odd in b.
 fn perpendicular(a: f64, b: f64, c: f64) -> f64 {
     let s = a.hypot(c);
     ((b / c).atan() - c / s * (b / s).atan()) / (2.0 * PI)
@@ -245,7 +255,8 @@ fn seen(vertex: &Vertex, h: f64) -> f64 {
     strip(far) - strip(near)
 }
 
-/// The part of two bounces at (x, y, 1) on the cube's top for albedos of 1 and a radiance of 1: over the walls above z = 1, which see the whole light.
+/// The part of two bounces at (x, y, 1) on the cube's top for albedos of 1 and a radiance of 1: over the
+/// walls above z = 1, which see the whole light.
 fn two_bounces(x: f64, y: f64, h: f64) -> f64 {
     let rule = gauss(16);
     // finer towards the ceiling, near whose edge the light may be
@@ -284,8 +295,9 @@ fn wall_vertex([x, y, z]: [f64; 3]) -> Vertex {
     Vertex::at([x, y, z.min(4f64.next_down())]).unwrap()
 }
 
-/// The part of the hemisphere above (x, y, 0) that the light fills beside the cube's shadow: seen from the floor, a light's point is hidden if the way to it
-/// crosses the square [−½, ½]² before it has risen to z = 1. Gauss over each piece, cut where the shadow begins and ends.
+/// The part of the hemisphere above (x, y, 0) that the light fills beside the cube's shadow: seen from the
+/// floor, a light's point is hidden if the way to it crosses the square [−½, ½]² before it has risen to z =
+/// 1. Gauss over each piece, cut where the shadow begins and ends.
 fn seen_from_floor(x: f64, y: f64, h: f64) -> f64 {
     let hidden = |lx: f64, ly: f64| {
         // slabs in the plane, over the first quarter of the way
@@ -353,7 +365,8 @@ fn truths_are_the_worksheets() {
     assert!((seen_from_floor(1.7, 0.2, 1.0) / seen(&far, 1.0) - 1.0).abs() <= 1e-12);
 }
 
-/// One bounce is known everywhere, also where the cube hides some of the light; two on the cube's top, by the quadrature here.
+/// One bounce is known everywhere, also where the cube hides some of the light; two on the cube's top, by the
+/// quadrature here.
 #[test]
 fn the_rooms_closed_forms_are_the_quadratures() {
     for (h, x, y, closeness) in [(0.5, 0.0, 0.0, 1e-11), (1.3, 0.21, -0.43, 1e-11), (1.9, -0.37, 0.12, 1e-11)]
@@ -398,7 +411,8 @@ fn paths_say_what_they_count() {
     }
 }
 
-// ---- the furnace ---------------------------------------------------------------------------------------------------
+// ---- the furnace
+// ---------------------------------------------------------------------------------------------------
 
 const ALBEDOS: [f64; 4] = [0.2, 0.5, 0.8, 0.99];
 
@@ -437,7 +451,8 @@ fn the_furnace_is_exact_with_cosine_directions() {
     }
 }
 
-/// With uniform ones a draw is Σ ρᵏ Π 2 cos θ with cos θ = 1 − u: linear in every u, so that two of Gauss's nodes give the mean, whatever the angles φ.
+/// With uniform ones a draw is Σ ρᵏ Π 2 cos θ with cos θ = 1 − u: linear in every u, so that two of Gauss's
+/// nodes give the mean, whatever the angles φ.
 #[test]
 fn the_furnace_is_exact_with_uniform_directions() {
     let rule = gauss(2);
@@ -466,8 +481,9 @@ fn the_furnace_is_exact_with_uniform_directions() {
     }
 }
 
-/// Coins put in by hand: a path goes on for U < q, and not for U ≥ q, q rounded up to the grid. Its draw is then Σ (ρ/q)ᵏ over the bounces that it made, and since it makes k of them
-/// or more with probability qᵏ, its mean is 1/(1 − ρ).
+/// Coins put in by hand: a path goes on for U < q, and not for U ≥ q, q rounded up to the grid. Its draw is
+/// then Σ (ρ/q)ᵏ over the bounces that it made, and since it makes k of them or more with probability qᵏ, its
+/// mean is 1/(1 − ρ).
 #[test]
 fn roulette_in_the_furnace_is_exact() {
     let mut phi = Stream::new(common::seed(422), 0);
@@ -479,7 +495,8 @@ fn roulette_in_the_furnace_is_exact() {
             // by weight it goes on with probability ρ, and every vertex counts 1
             .chain([(albedo, by_throughput)])
         {
-            // the smallest number of the grid that does not go on, and the largest one that does; a weight that went on may be a hair below 1
+            // the smallest number of the grid that does not go on, and the largest one that does; a weight
+            // that went on may be a hair below 1
             let above = (q * 2f64.powi(53)).ceil() * 2f64.powi(-53);
             let below = above - if by_q == by_throughput { 2f64.powi(-50) } else { 2f64.powi(-53) };
             for bounces in 0..8 {
@@ -495,7 +512,8 @@ fn roulette_in_the_furnace_is_exact() {
     }
 }
 
-/// A q between two points of the grid goes on with the upper one's probability, and the light is divided by that.
+/// A q between two points of the grid goes on with the upper one's probability, and the light is divided by
+/// that.
 #[test]
 fn a_q_between_grid_points_is_the_upper_one() {
     let step = 2f64.powi(-53);
@@ -522,10 +540,11 @@ fn the_furnace_without_a_limit() {
     }
 }
 
-// ---- direct light --------------------------------------------------------------------------------------------------
+// ---- direct light
+// --------------------------------------------------------------------------------------------------
 
-/// A point that the cube hides no light from: on the cube; on a wall, since what goes from there to the ceiling is above z = 1 when it is over the cube; or on the floor,
-/// a third of 2 + h away from the middle.
+/// A point that the cube hides no light from: on the cube; on a wall, since what goes from there to the
+/// ceiling is above z = 1 when it is over the cube; or on the floor, a third of 2 + h away from the middle.
 fn free_point(h: f64, rng: &mut Stream) -> [f64; 3] {
     loop {
         let face = Face::ALL[(rng.uniform() * 11.0) as usize];
@@ -575,7 +594,8 @@ fn direct_light_is_howells() {
     }
 }
 
-/// Each draw that looks for the light along a cosine direction is 0 or ρ L_e, so its mean ρ L_e P gives its variance (ρ L_e)² P (1 − P).
+/// Each draw that looks for the light along a cosine direction is 0 or ρ L_e, so its mean ρ L_e P gives its
+/// variance (ρ L_e)² P (1 − P).
 #[test]
 fn by_chance_a_draw_is_all_or_nothing() {
     let once = paths(Scene::default(), Exactly(1), (Cosine, ByChance));
@@ -587,7 +607,8 @@ fn by_chance_a_draw_is_all_or_nothing() {
     assert!((found.variance().unwrap() / (64.0 * p * (1.0 - p) * n / (n - 1.0)) - 1.0).abs() <= 1e-12);
 }
 
-/// Lights of other shapes through section 3's estimator: a triangle and a pentagon, one partly below the horizon.
+/// Lights of other shapes through section 3's estimator: a triangle and a pentagon, one partly below the
+/// horizon.
 #[test]
 fn polygonal_lights_fill_their_part_of_the_sky() {
     let surface = Lambertian::new(0.61).unwrap();
@@ -599,7 +620,8 @@ fn polygonal_lights_fill_their_part_of_the_sky() {
         let turn = sides[0].dot(c).signum();
         let lit = |w: DVec3| sides.iter().all(|side| side.dot(w) * turn > 0.0);
         let cosine = surface.cosine_estimator(|w| if lit(w.vector()) { 7.0 } else { 0.0 });
-        // ∫ cos θ cos θ′/(πr²) over the part above the horizon: cos θ is 0 below, which Gauss's nodes see if there are enough
+        // ∫ cos θ cos θ′/(πr²) over the part above the horizon: cos θ is 0 below, which Gauss's nodes see if
+        // there are enough
         let rule = gauss(16);
         let area = (b - a).cross(c - b);
         let mut p = 0.0;
@@ -633,7 +655,8 @@ fn shadows_of_the_cube_are_where_they_belong() {
     }
 }
 
-// ---- two bounces ---------------------------------------------------------------------------------------------------
+// ---- two bounces
+// ---------------------------------------------------------------------------------------------------
 
 /// Of points on the cube's top a scene, what it looks like, and the light of two bounces there.
 fn two_bounce_scene(h: f64, [x, y]: [f64; 2], [wall_albedo, cube_albedo]: [f64; 2]) -> (Scene, String, f64) {
@@ -702,10 +725,12 @@ fn two_bounces_are_the_quadratures() {
     }
 }
 
-// ---- all light -----------------------------------------------------------------------------------------------------
+// ---- all light
+// -----------------------------------------------------------------------------------------------------
 
-/// All light that is emitted is absorbed: ∫ (1 − ρ) E dA = π ∫ L_e dA, over walls, cube and the light itself. E(x) = π times the light that leaves
-/// what a cosine direction from x meets, with all its bounces and every shadow. If the faces emit, too, the draws vary little.
+/// All light that is emitted is absorbed: ∫ (1 − ρ) E dA = π ∫ L_e dA, over walls, cube and the light itself.
+/// E(x) = π times the light that leaves what a cosine direction from x meets, with all its bounces and every
+/// shadow. If the faces emit, too, the draws vary little.
 #[test]
 fn what_is_emitted_is_absorbed() {
     let (emission, radiance) = (1.0, 2.0);
@@ -756,8 +781,9 @@ fn what_is_emitted_is_absorbed() {
     }
 }
 
-/// The same of the lamp alone, from two random points in each of very many cells of every face: what leaves a point is ρ E/π, by paths side by side; the light, which
-/// reflects nothing, gets what comes from where cosine directions lead.
+/// The same of the lamp alone, from two random points in each of very many cells of every face: what leaves a
+/// point is ρ E/π, by paths side by side; the light, which reflects nothing, gets what comes from where
+/// cosine directions lead.
 #[test]
 fn what_the_lamp_emits_is_absorbed() {
     // a cell is all light or has none, and all cube or has none
@@ -831,7 +857,8 @@ fn cumulative_light_is_the_worksheets() {
     }
 }
 
-/// Every way against all others together, each weighing as much as it knows; with a large light that is found by chance, too, faces that emit, and an end of every kind.
+/// Every way against all others together, each weighing as much as it knows; with a large light that is found
+/// by chance, too, faces that emit, and an end of every kind.
 #[test]
 fn all_ways_agree() {
     let scene = Scene {
@@ -885,7 +912,8 @@ fn ways_agree(scene: Scene, group: &[Bounces], seed: u64, truth: Option<f64>) {
     }
 }
 
-/// On one and the same path UpTo(K) finds what Exactly(0), …, Exactly(K) find, if neither samples the light: the numbers drawn are the same.
+/// On one and the same path UpTo(K) finds what Exactly(0), …, Exactly(K) find, if neither samples the light:
+/// the numbers drawn are the same.
 #[test]
 fn bounces_add_up_path_by_path() {
     let scene = Scene { light_half_width: 1.9, emission: 0.25, ..Scene::default() };
@@ -900,7 +928,8 @@ fn bounces_add_up_path_by_path() {
     }
 }
 
-// ---- paths as they are drawn ---------------------------------------------------------------------------------------
+// ---- paths as they are drawn
+// ---------------------------------------------------------------------------------------
 
 #[test]
 fn a_traced_path_is_the_one_drawn() {
@@ -942,7 +971,8 @@ fn a_traced_path_is_the_one_drawn() {
                     }
                     let sampled = way.1 == BySampling && scene.light_half_width > 0.0;
                     assert!(sampled || path.samples.is_empty());
-                    // the light is sampled once at every vertex that counts, and no vertex is visited for nothing
+                    // the light is sampled once at every vertex that counts, and no vertex is visited for
+                    // nothing
                     match bounces {
                         Exactly(0) | UpTo(0) => assert_eq!((path.vertices.len(), path.samples.len()), (1, 0)),
                         Exactly(2) if sampled && scene.emission == 0.0 => {
@@ -1011,7 +1041,8 @@ const GOLDEN: [u64; 12] = [
 
 const COUNTS: (u64, u64) = (76, 22);
 
-// ---- cautions, errors and ends -------------------------------------------------------------------------------------
+// ---- cautions, errors and ends
+// -------------------------------------------------------------------------------------
 
 #[test]
 fn a_caution_says_when_the_variance_may_be_infinite() {
@@ -1026,11 +1057,13 @@ fn a_caution_says_when_the_variance_may_be_infinite() {
     for scene in [with(0.5, 0.8, 0.5), with(0.8, 0.1, 0.5)] {
         for light in FindLight::ALL {
             assert_eq!(says(scene, All(0.6400001), (Cosine, light)), None);
-            let told = "the variance may be infinite, and the error bar too short: q = 0.64 is not above ρ² = 0.6400 for the largest albedo";
+            let told = "the variance may be infinite, and the error bar too short: q = 0.64 is not above ρ² \
+                        = 0.6400 for the largest albedo";
             assert_eq!(says(scene, All(0.64), (Cosine, light)).unwrap(), told);
             assert!(says(scene, All(0.2), (Cosine, light)).is_some());
             assert_eq!(says(scene, All(0.86), (Uniform, light)), None);
-            let told = "the variance may be infinite, and the error bar too short: q = 0.85 is not above (4/3)ρ² = 0.8533 for the largest albedo";
+            let told = "the variance may be infinite, and the error bar too short: q = 0.85 is not above \
+                        (4/3)ρ² = 0.8533 for the largest albedo";
             assert_eq!(says(scene, All(0.85), (Uniform, light)).unwrap(), told);
         }
     }
@@ -1039,12 +1072,15 @@ fn a_caution_says_when_the_variance_may_be_infinite() {
     assert_eq!(says(with(0.5, 0.86, 0.5), AllByThroughput, WAYS[1]), None);
     assert_eq!(
         says(with(0.5, 0.87, 0.5), AllByThroughput, WAYS[1]).unwrap(),
-        "the variance may be infinite, and the error bar too short: the squared throughput of a path grows by (4/3)ρ² = 1.0092 a bounce for the largest albedo, and nothing ends a path of throughput 1 or more"
+        "the variance may be infinite, and the error bar too short: the squared throughput of a path grows \
+         by (4/3)ρ² = 1.0092 a bounce for the largest albedo, and nothing ends a path of throughput 1 or more"
     );
-    // a number of bounces ends every path, but uniform directions make weights that vary too much: from 24 of them on, (9/5)²⁴ = 1.3e6
+    // a number of bounces ends every path, but uniform directions make weights that vary too much: from 24 of
+    // them on, (9/5)²⁴ = 1.3e6
     let few = |draws: &str| {
         Some(format!(
-            "uniform directions make most throughputs far too small and a few very large, so that the error bar of fewer than about {draws} draws means nothing"
+            "uniform directions make most throughputs far too small and a few very large, so that the error \
+             bar of fewer than about {draws} draws means nothing"
         ))
     };
     for albedo in [1.0, 0.5, 1e-3] {
@@ -1060,7 +1096,8 @@ fn a_caution_says_when_the_variance_may_be_infinite() {
             assert_eq!(says(scene, UpTo(64), (Cosine, light)), None);
         }
     }
-    // a sum is no worse than its terms: with an albedo that makes the first ones the largest there is nothing to say
+    // a sum is no worse than its terms: with an albedo that makes the first ones the largest there is nothing
+    // to say
     assert_eq!(says(with(0.5, 0.5, 0.5), UpTo(64), WAYS[1]), None);
     assert_eq!(says(with(1.0, 1.0, 0.5), UpTo(12), WAYS[1]), None);
     assert!(says(with(1.0, 1.0, 0.5), UpTo(64), WAYS[1]).unwrap().contains("uniform directions"));
@@ -1068,7 +1105,8 @@ fn a_caution_says_when_the_variance_may_be_infinite() {
     assert_eq!(says(with(0.5, 0.5, 0.5), Exactly(15), (Uniform, ByChance)), None);
     assert_eq!(
         says(with(0.5, 0.5, 0.5), Exactly(16), (Uniform, ByChance)).unwrap(),
-        "uniform directions make most throughputs far too small and a few very large, and few paths find the light, so that the error bar of fewer than about 1e6 draws means nothing"
+        "uniform directions make most throughputs far too small and a few very large, and few paths find the \
+         light, so that the error bar of fewer than about 1e6 draws means nothing"
     );
     assert_eq!(says(with(0.5, 0.5, 0.00501), Exactly(1), (Cosine, ByChance)), None);
     assert_eq!(
@@ -1080,13 +1118,15 @@ fn a_caution_says_when_the_variance_may_be_infinite() {
     let lit = Scene { emission: 1.0, ..with(0.5, 0.5, 0.0005) };
     assert_eq!(says(lit, AllByThroughput, (Cosine, ByChance)), None);
     // a light that touches the walls, sampled from there
-    let told = "the variance may be infinite, and the error bar too short: the light touches the walls, where its samples weigh without bound";
+    let told = "the variance may be infinite, and the error bar too short: the light touches the walls, \
+                where its samples weigh without bound";
     for bounces in [UpTo(2), Exactly(2), All(0.9), AllByThroughput] {
         assert_eq!(says(with(0.5, 0.5, 2.0), bounces, WAYS[0]).unwrap(), told);
         assert_eq!(says(with(0.5, 0.5, 2.0), bounces, WAYS[2]), None);
         // one that all but does: 8/(2 − h)³
         assert_eq!(says(with(0.5, 0.5, 1.979), bounces, WAYS[0]), None);
-        let told = "the light is so near the walls that a few of its samples outweigh all others, so that the error bar of fewer than about 8e9 draws means nothing";
+        let told = "the light is so near the walls that a few of its samples outweigh all others, so that \
+                    the error bar of fewer than about 8e9 draws means nothing";
         assert_eq!(says(with(0.5, 0.5, 1.999), bounces, WAYS[0]).unwrap(), told);
         assert_eq!(says(with(0.5, 0.5, 1.999), bounces, WAYS[2]), None);
         assert!(says(with(0.5, 0.5, 2f64.next_down()), bounces, WAYS[0]).is_some());
@@ -1138,7 +1178,8 @@ fn bad_paths_are_errors() {
     );
 }
 
-/// Points everywhere, edges and corners too, lights of every size, ρ = 0 and 1, long paths: every draw is finite and not negative.
+/// Points everywhere, edges and corners too, lights of every size, ρ = 0 and 1, long paths: every draw is
+/// finite and not negative.
 #[test]
 fn no_scene_gives_anything_but_numbers() {
     let mut points = vec![

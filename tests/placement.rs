@@ -78,7 +78,8 @@ fn of_two_numbers() -> Vec<Known> {
     all
 }
 
-/// By quadrature to 1e-9, and by one scrambled set of 2¹⁴ Sobol points to 1e-4 of the mean, or of σ where that is larger. As many independent draws would know σ/128.
+/// By quadrature to 1e-9, and by one scrambled set of 2¹⁴ Sobol points to 1e-4 of the mean, or of σ where
+/// that is larger. As many independent draws would know σ/128.
 #[test]
 fn quadrature_and_sobol_points_know_the_closed_forms() {
     for (name, numbers, estimator, mean, variance) in of_two_numbers() {
@@ -97,8 +98,9 @@ fn quadrature_and_sobol_points_know_the_closed_forms() {
     }
 }
 
-/// A draw's numbers, the first to the last of 256 and beyond: the mean of five points, which any one of them that is not uniform would move, over 2¹⁶ sets is ½ to 8 of one number's std
-/// errors (1.2e-15), 0.009. And each of a set's points, in each number and in each plane of a grid, has a cell of its own.
+/// A draw's numbers, the first to the last of 256 and beyond: the mean of five points, which any one of them
+/// that is not uniform would move, over 2¹⁶ sets is ½ to 8 of one number's std errors (1.2e-15), 0.009. And
+/// each of a set's points, in each number and in each plane of a grid, has a cell of its own.
 #[test]
 fn every_placed_number_is_uniform() {
     const PLACES: [usize; 7] = [0, 1, 2, 5, 128, 255, 300];
@@ -142,7 +144,8 @@ fn every_placed_number_is_uniform() {
     }
 }
 
-/// Every estimator has its truth on placed numbers, whatever it takes of them: z ≤ 8 (1.2e-15 each) over 4000 sets of 64 points.
+/// Every estimator has its truth on placed numbers, whatever it takes of them: z ≤ 8 (1.2e-15 each) over 4000
+/// sets of 64 points.
 #[test]
 fn the_mean_stays() {
     let room = BoxRoom::new(Scene::default()).unwrap();
@@ -181,8 +184,10 @@ fn the_mean_stays() {
     }
 }
 
-/// Measured for this scene by a prototype in another program: 4096 points in place of as many independent paths lower the variance 3·10⁶ times at one bounce, 240 times at up to two and 3,700
-/// times for two with L_o(p_j) known. The variance of 512 sets is known to a tenth or so; half of those factors are asked for, and 2 at up to fifteen.
+/// Measured for this scene by a prototype in another program: 4096 points in place of as many independent
+/// paths lower the variance 3·10⁶ times at one bounce, 240 times at up to two and 3,700 times for two with
+/// L_o(p_j) known. The variance of 512 sets is known to a tenth or so; half of those factors are asked for,
+/// and 2 at up to fifteen.
 #[test]
 fn the_variance_falls() {
     let room = BoxRoom::new(Scene::default()).unwrap();

@@ -57,7 +57,8 @@ fn assert_variance(
     assert_mean(&format!("variance of {what}"), &squares, variance, draws, seed);
 }
 
-// ---- the rectangle ---------------------------------------------------------------------------------------------
+// ---- the rectangle
+// ---------------------------------------------------------------------------------------------
 
 #[test]
 fn a_rectangle_says_what_it_is() {
@@ -147,7 +148,8 @@ fn the_density_is_one_over_the_area_inside_and_nothing_outside() {
     }
 }
 
-// ---- the points ------------------------------------------------------------------------------------------------
+// ---- the points
+// ------------------------------------------------------------------------------------------------
 
 type F = Box<dyn Fn(f64, f64) -> f64 + Send + Sync>;
 
@@ -339,7 +341,8 @@ fn points_never_leave_the_rectangle_by_rounding() {
     }
 }
 
-// ---- mean and variance -----------------------------------------------------------------------------------------
+// ---- mean and variance
+// -----------------------------------------------------------------------------------------
 
 /// Integrals, variances of a draw and of its two main effects from mpmath's nested quadrature at 30 digits,
 /// and 1/r's integral from a single one: sheet, offset 1.7 × 4.1, 1.7 × 4.1 about the origin (−0.6, 1.1) ×
@@ -354,15 +357,20 @@ fn closed_forms_agree_with_quadrature_by_another_program() {
         (SHEET, Integrand::Gaussian, 3.112270319717472, 15.443330846061864, 11.83078942472328),
         (SHEET, Integrand::Product, 0.0, 455.1111111111111, 0.0),
         (offset(), Integrand::Paraboloid, 26.950666666666667, 386.0862308671111, 386.0862308671111),
-        (offset(), Integrand::Gaussian, 0.9845040919157972, 1.9913092759862991, 0.652936733969756 + 0.799671608183964),
+        (offset(), Integrand::Gaussian, 0.9845040919157972, 1.9913092759862991,
+            0.652936733969756 + 0.799671608183964),
         (offset(), Integrand::Product, 7.614725, 116.94984640881945, 10.559159825208333 + 90.00107655020834),
         (about, Integrand::Paraboloid, 15.798666666666666, 234.56564249377772, 234.56564249377772),
-        (about, Integrand::Gaussian, 2.2541514381429835, 4.410744878931096, 0.37026490619822366 + 3.7660494629648813),
+        (about, Integrand::Gaussian, 2.2541514381429835, 4.410744878931096,
+            0.37026490619822366 + 3.7660494629648813),
         (about, Integrand::Product, 1.306875, 27.224162835486112, 6.581193796874999 + 4.253359005208335),
         (holds, Integrand::Paraboloid, 121.55000000000001, 6529.718177216001, 6529.718177216001),
-        (holds, Integrand::Gaussian, 3.1376227529610996, 31.812600440415427, 10.198235285463515 + 10.616542916509037),
-        (holds, Integrand::Product, -0.5304000000000004, 3682.9083532800005, 243.90804671999993 + 3.961981920000008),
-        (holds, Integrand::Disc, 4.0 * PI, 4.0 * PI * (26.52 - 4.0 * PI), (5.1 + 5.2) * 128.0 / 3.0 - 32.0 * PI * PI),
+        (holds, Integrand::Gaussian, 3.1376227529610996, 31.812600440415427,
+            10.198235285463515 + 10.616542916509037),
+        (holds, Integrand::Product, -0.5304000000000004, 3682.9083532800005,
+            243.90804671999993 + 3.961981920000008),
+        (holds, Integrand::Disc, 4.0 * PI, 4.0 * PI * (26.52 - 4.0 * PI),
+            (5.1 + 5.2) * 128.0 / 3.0 - 32.0 * PI * PI),
         (SHEET, Integrand::Disc, 4.0 * PI, 4.0 * PI * (16.0 - 4.0 * PI), 8.0 * 128.0 / 3.0 - 32.0 * PI * PI),
         (SHEET, Integrand::Constant, 16.0, 0.0, 0.0),
         (offset(), Integrand::Constant, 6.97, 0.0, 0.0),
@@ -405,26 +413,37 @@ fn closed_forms_hold_at_the_ends_of_the_range() {
     let tiny = 1e-300;
     #[rustfmt::skip]
     let rows = [
-        (Integrand::InverseDistance, [0.0, tiny], [0.0, 1e300], Some(1.3832442029769874e-297), Some(f64::INFINITY)),
-        (Integrand::InverseDistance, [-tiny, tiny], [-1e300, 1e300], Some(5.5329768119079495e-297), Some(f64::INFINITY)),
-        (Integrand::InverseDistance, [-1e150, 3e150], [-1e-150, 2e-150], Some(4.1553352986164063e-147), Some(f64::INFINITY)),
+        (Integrand::InverseDistance, [0.0, tiny], [0.0, 1e300], Some(1.3832442029769874e-297),
+            Some(f64::INFINITY)),
+        (Integrand::InverseDistance, [-tiny, tiny], [-1e300, 1e300], Some(5.5329768119079495e-297),
+            Some(f64::INFINITY)),
+        (Integrand::InverseDistance, [-1e150, 3e150], [-1e-150, 2e-150], Some(4.1553352986164063e-147),
+            Some(f64::INFINITY)),
         (Integrand::InverseDistance, [0.0, 1e9], [0.0, 1.0], Some(22.416413017506358), Some(f64::INFINITY)),
         (Integrand::InverseDistance, [3.0, 4.0], [0.0, 1.0], Some(0.28378148350631294), None),
         (Integrand::InverseDistance, [1e-9, 1.0], [1e-9, 1.0], Some(1.7627471309690073), None),
         (Integrand::InverseDistance, [1e9, 1e9 + 1.0], [0.0, 1.0], None, None),
-        (Integrand::Paraboloid, [1e100, 3e100], [1e-250, 2e-250], Some(8.666666666666665e50), Some(2.1688888888888882e101)),
-        (Integrand::Paraboloid, [1e154, 1.5e154], [-1e-154, 0.0], Some(7.916666666666669e307), Some(f64::INFINITY)),
+        (Integrand::Paraboloid, [1e100, 3e100], [1e-250, 2e-250], Some(8.666666666666665e50),
+            Some(2.1688888888888882e101)),
+        (Integrand::Paraboloid, [1e154, 1.5e154], [-1e-154, 0.0], Some(7.916666666666669e307),
+            Some(f64::INFINITY)),
         (Integrand::Product, [1e100, 3e100], [1e-250, 2e-250], Some(6e-300), Some(0.0)),
         (Integrand::Product, [1e154, 1.5e154], [-1e-154, 0.0], Some(-0.31250000000000006), None),
-        (Integrand::Gaussian, [0.0, 1e300], [0.0, tiny], Some(8.86226925452758e-301), Some(6.266570686577502e-301)),
-        (Integrand::Gaussian, [3.0, 4.0], [-1.0, 1.0], Some(2.9221032725264563e-05), Some(2.1045597902100118e-09)),
-        (Integrand::Gaussian, [-2.0, -1.0], [0.25, 0.5], Some(0.029268739946639154), Some(0.0004805184620827945)),
+        (Integrand::Gaussian, [0.0, 1e300], [0.0, tiny], Some(8.86226925452758e-301),
+            Some(6.266570686577502e-301)),
+        (Integrand::Gaussian, [3.0, 4.0], [-1.0, 1.0], Some(2.9221032725264563e-05),
+            Some(2.1045597902100118e-09)),
+        (Integrand::Gaussian, [-2.0, -1.0], [0.25, 0.5], Some(0.029268739946639154),
+            Some(0.0004805184620827945)),
         (Integrand::Gaussian, [0.0, 0.5], [0.0, 0.5], Some(0.21278016687719867), Some(0.0004804193337620764)),
-        (Integrand::Gaussian, [-1e300, 1e300], [-1.0, 1.0], Some(2.6474226203051177), Some(5.997298717593193e300)),
-        (Integrand::Gaussian, [10.0, 11.0], [0.5, 2.0], Some(7.788484606752762e-46), Some(9.685010464096884e-90)),
+        (Integrand::Gaussian, [-1e300, 1e300], [-1.0, 1.0], Some(2.6474226203051177),
+            Some(5.997298717593193e300)),
+        (Integrand::Gaussian, [10.0, 11.0], [0.5, 2.0], Some(7.788484606752762e-46),
+            Some(9.685010464096884e-90)),
         (Integrand::Gaussian, [2.0, 2.0 + 1e-9], [0.0, 1.0], Some(1.3678562234396564e-11), None),
         (Integrand::Gaussian, [20.0, 26.0], [-1.0, 0.5], Some(5.777112132202588e-176), Some(0.0)),
-        (Integrand::Gaussian, [25.0, 25.0 + 1.0 / (1u64 << 40) as f64], [0.0, 1.0], Some(2.500157262791068e-284), Some(0.0)),
+        (Integrand::Gaussian, [25.0, 25.0 + 1.0 / (1u64 << 40) as f64], [0.0, 1.0],
+            Some(2.500157262791068e-284), Some(0.0)),
         (Integrand::Gaussian, [20.3, 26.1], [-1.0, 0.5], Some(3.1962467416788425e-181), Some(0.0)),
         (Integrand::Gaussian, [-26.7, -25.9], [0.0, 1.0], Some(6.7528028411152416e-294), Some(0.0)),
         (Integrand::Gaussian, [26.5, 1e10], [0.0, 1.0], Some(1.4633017404444406e-307), Some(0.0)),
@@ -724,7 +743,8 @@ fn intervals_cover_the_truth_as_often_as_they_say() {
     }
 }
 
-// ---- how the error falls ---------------------------------------------------------------------------------------
+// ---- how the error falls
+// ---------------------------------------------------------------------------------------
 
 /// The slope of ln RMSE against ln evaluations between two estimators, and the standard error of that slope,
 /// from unbiased estimates of both variances.
@@ -780,7 +800,8 @@ fn the_error_falls_as_it_should() {
     assert!((by - expected).abs() <= Z * off && (expected + 0.25).abs() < 0.02, "all pairs: {by} ± {off}");
 }
 
-// ---- the classic mistakes --------------------------------------------------------------------------------------
+// ---- the classic mistakes
+// --------------------------------------------------------------------------------------
 
 /// Each mistake, with the ratio that its expectation has to the truth. 400,000 draws: the ratio is confirmed,
 /// and 1 rejected, at 7 standard errors.
@@ -927,7 +948,8 @@ fn dependent_points_taken_as_draws_have_a_wrong_error_bar() {
     assert_relative_eq!((actual / claimed).sqrt(), 4.975, epsilon = 0.0, max_relative = 1e-3);
 }
 
-// ---- cost, bits and bad values ---------------------------------------------------------------------------------
+// ---- cost, bits and bad values
+// ---------------------------------------------------------------------------------
 
 #[test]
 fn costs_are_counted() {
@@ -985,7 +1007,8 @@ fn golden_values() {
     assert_eq!(format!("{:?}", first_two(&offset().sobol(f, 1000).unwrap())), GOLDEN[4]);
 }
 
-const GOLDEN_POINTS: &str = "[[1.8082437062842118, -0.9469052130695466], [0.6214253047108504, -0.9837903843152652], [1.1420631166811885, 2.0514445006682176]]";
+const GOLDEN_POINTS: &str = "[[1.8082437062842118, -0.9469052130695466], [0.6214253047108504, \
+                             -0.9837903843152652], [1.1420631166811885, 2.0514445006682176]]";
 const GOLDEN: [&str; 5] = [
     "[-0.5964000373885225, -9.382703583520168]",
     "[19.423984018322304, 29.147980400727864]",
@@ -1056,7 +1079,8 @@ fn sums_are_exact_at_every_scale() {
     assert_eq!(one_draw(&SHEET.sobol(&f, 1024).unwrap()), 16.0 * 1022.0 / 1024.0);
 }
 
-// ---- properties ------------------------------------------------------------------------------------------------
+// ---- properties
+// ------------------------------------------------------------------------------------------------
 
 fn any_bits() -> impl Strategy<Value = f64> {
     any::<u64>().prop_map(f64::from_bits)
@@ -1092,7 +1116,8 @@ proptest! {
 
     /// Any bits: an error or a rectangle that keeps its word.
     #[test]
-    fn any_bits_make_an_error_or_a_sound_rectangle(x in sorted(), y in sorted(), n in any::<u64>(), at in any::<[u64; 2]>()) {
+    fn any_bits_make_an_error_or_a_sound_rectangle(x in sorted(), y in sorted(), n in any::<u64>(),
+        at in any::<[u64; 2]>()) {
         let [px, py] = at.map(f64::from_bits);
         for f in Integrand::ALL {
             // a finite point has a value that is a number
@@ -1101,7 +1126,8 @@ proptest! {
         let Ok(r) = Rectangle::new(x, y) else { return Ok(()) };
         prop_assert!(r.area().is_normal() && r.area() > 0.0 && (1.0 / r.area()).is_normal());
         let mut rng = Stream::new(n, 0);
-        let points = [r.sample(&mut rng), r.sample(&mut rng), r.sample(&mut Ones), [x[0], y[0]], [x[1], y[1]]];
+        let points = [r.sample(&mut rng), r.sample(&mut rng), r.sample(&mut Ones), [x[0], y[0]], [x[1],
+            y[1]]];
         for point in points {
             prop_assert!(x[0] <= point[0] && point[0] <= x[1] && y[0] <= point[1] && point[1] <= y[1]);
             prop_assert_eq!(r.pdf(&point), 1.0 / r.area());
@@ -1178,7 +1204,8 @@ fn range() -> impl Strategy<Value = [f64; 2]> {
 proptest! {
     #![proptest_config(config(40))]
 
-    /// Closed forms on random rectangles against quadrature; where there is no closed form, there is a reason.
+    /// Closed forms on random rectangles against quadrature; where there is no closed form, there is a
+    /// reason.
     #[test]
     fn closed_forms_agree_with_quadrature(x in range(), y in range(), n in 1u64..100) {
         let r = rectangle(x, y);
@@ -1195,7 +1222,8 @@ proptest! {
             let variance = r.area() * double([x, y], |x, y| (f.at(x, y) - mean).powi(2));
             let scale = r.area() * double([x, y], |x, y| f.at(x, y).powi(2));
             if let Some(got) = f.variance(&r) {
-                prop_assert!((got - variance).abs() <= 1e-11 * variance + 1e-26 * scale, "{}: {} for {}", f, got, variance);
+                prop_assert!((got - variance).abs() <= 1e-11 * variance + 1e-26 * scale, "{}: {} for \
+                    {}", f, got, variance);
             } else {
                 prop_assert!(f == Integrand::Gaussian && variance < scale / 500.0);
             }
@@ -1204,11 +1232,13 @@ proptest! {
             if let Some(got) = f.all_pairs_variance(&r, n) {
                 let n = n as f64;
                 let truth = (variance + (n - 1.0) * (along_x + along_y)) / (n * n);
-                prop_assert!((got - truth).abs() <= 1e-11 * truth + 1e-26 * scale, "{}: {} for {}", f, got, truth);
+                prop_assert!((got - truth).abs() <= 1e-11 * truth + 1e-26 * scale, "{}: {} for \
+                    {}", f, got, truth);
             }
         }
         // div(r/|r|) = 1/|r| in the plane: ∫∫ 1/r is the flux of the unit vector through the four sides
-        let side = |distance: f64, along| quadrature(along, |t| if distance == 0.0 { 0.0 } else { distance / distance.hypot(t) });
+        let side = |distance: f64, along| quadrature(along,
+            |t| if distance == 0.0 { 0.0 } else { distance / distance.hypot(t) });
         let flux = side(x[1], y) - side(x[0], y) + side(y[1], x) - side(y[0], x);
         let got = Integrand::InverseDistance.integral(&r);
         // a side at 1e-3 of the origin is more than the quadrature can do

@@ -1,10 +1,12 @@
-//! Section 5: roulette is unbiased, its laws, variances and costs are the exact ones, and the classic mistakes are seen.
+//! Section 5: roulette is unbiased, its laws, variances and costs are the exact ones, and the classic
+//! mistakes are seen.
 //!
-//! Tolerances. A z-test rejects beyond 7 std errors: a false alarm has probability 2.6e-12, and a bias of 14 std errors is caught with
-//! as much certainty. A sampler's cdf lies within the band √(ln(2/α)/2n) of Dvoretzky, Kiefer & Wolfowitz, which holds
-//! for every n and for jumps, too; α = 1e-12, and a cdf that is off by twice the band is caught with the same certainty. About 115
-//! such tests are made here: 3e-10 a run. Estimators are tested where their eighth moments are finite, so that means of squares are near
-//! normal, too; where they are not, the test says what it does instead.
+//! Tolerances. A z-test rejects beyond 7 std errors: a false alarm has probability 2.6e-12, and a bias of 14
+//! std errors is caught with as much certainty. A sampler's cdf lies within the band √(ln(2/α)/2n) of
+//! Dvoretzky, Kiefer & Wolfowitz, which holds for every n and for jumps, too; α = 1e-12, and a cdf that is
+//! off by twice the band is caught with the same certainty. About 115 such tests are made here: 3e-10 a run.
+//! Estimators are tested where their eighth moments are finite, so that means of squares are near normal,
+//! too; where they are not, the test says what it does instead.
 
 mod common;
 
@@ -39,8 +41,8 @@ fn ulps(a: f64, b: f64) -> u64 {
     a.to_bits().abs_diff(b.to_bits())
 }
 
-/// `estimator`'s mean and variance are the exact ones, each by a z-test: the mean against the exact σ/√n, the variance as the mean
-/// of (X − μ)² against its own std error.
+/// `estimator`'s mean and variance are the exact ones, each by a z-test: the mean against the exact σ/√n, the
+/// variance as the mean of (X − μ)² against its own std error.
 fn assert_moments(what: &str, estimator: &impl Estimator, mean: f64, variance: f64, n: u64) {
     let found = estimate(estimator, Budget::Draws(n), seed(11)).unwrap();
     let off = (found.mean() - mean).abs();
@@ -88,7 +90,8 @@ const LAWS: &[(f64, u64, f64, f64, f64)] = &[
     (NEARLY_ONE, 999_999_999_999_999_999, 6.745853450008784e-65, 1.0, 6.076124616751106e-49),
     (NEARLY_ONE, 1_000_000_000_000_000_000, 6.745853450008783e-65, 1.0, 6.076124616751105e-49),
     (NEARLY_ONE, 6_000_000_000_000_000_001, 5.5868918419223014e-306, 1.0, 5.0322248034881075e-290),
-    (1.0 - 4.0 * f64::EPSILON, 10_000_000_000_000_003, 1.233645419596688e-19, 0.9998611038737, 0.00013889612630007395),
+    (1.0 - 4.0 * f64::EPSILON, 10_000_000_000_000_003, 1.233645419596688e-19, 0.9998611038737,
+        0.00013889612630007395),
 ];
 
 #[test]
@@ -259,9 +262,11 @@ proptest! {
     #![proptest_config(config(2000))]
 
     #[test]
-    fn no_bits_panic_or_give_nan(p in any_f64(), u in any_f64(), x in any_f64(), y in any_f64(), k in any::<u64>()) {
+    fn no_bits_panic_or_give_nan(p in any_f64(), u in any_f64(), x in any_f64(), y in any_f64(),
+        k in any::<u64>()) {
         if let Ok(law) = Roulette::new(p) {
-            let values = [law.bounces().pmf(k), law.bounces().cdf(k), law.bounces().survival(k), law.bounces().mean(), law.bounces().variance()];
+            let values = [law.bounces().pmf(k), law.bounces().cdf(k), law.bounces().survival(k),
+                law.bounces().mean(), law.bounces().variance()];
             prop_assert!(values.iter().all(|value| *value >= 0.0), "{values:?}");
             let _ = law.bounces().quantile(u);
             if let Ok(variance) = law.wrapped_variance(x, y) {
@@ -275,10 +280,12 @@ proptest! {
 
     #[test]
     fn valid_input_gives_no_nan(
-        p in probability(), v in probability(), q in probability(), x in any_f64(), k in any::<u64>(), c in any_f64()
+        p in probability(), v in probability(), q in probability(), x in any_f64(), k in any::<u64>(),
+            c in any_f64()
     ) {
         if let Ok(law) = Roulette::new(p) {
-            let values = [law.bounces().pmf(k), law.bounces().cdf(k), law.bounces().survival(k), law.bounces().mean(), law.bounces().variance()];
+            let values = [law.bounces().pmf(k), law.bounces().cdf(k), law.bounces().survival(k),
+                law.bounces().mean(), law.bounces().variance()];
             prop_assert!(values.iter().all(|value| *value >= 0.0), "{values:?}");
             prop_assert!((law.bounces().cdf(k) + law.bounces().survival(k) - 1.0).abs() <= 4e-16);
             if x.is_finite() {
@@ -301,7 +308,8 @@ proptest! {
 
     /// The definition itself, and back again wherever the cdf still rises.
     #[test]
-    fn quantile_is_the_smallest_k_whose_cdf_reaches_u(p in probability(), u in probability(), k in 0u64..1000) {
+    fn quantile_is_the_smallest_k_whose_cdf_reaches_u(p in probability(), u in probability(),
+        k in 0u64..1000) {
         prop_assume!(p > 0.0);
         let law = roulette(p);
         let quantile = law.bounces().quantile(u)?;
@@ -362,7 +370,8 @@ fn bounces_have_their_exact_mean_and_variance() {
     }
 }
 
-/// Inversion takes one number a draw; simulation one coin a bounce and one to end: 1/(1 − p) a draw, with variance p/(1 − p)².
+/// Inversion takes one number a draw; simulation one coin a bounce and one to end: 1/(1 − p) a draw, with
+/// variance p/(1 − p)².
 #[test]
 fn bounces_cost_what_they_are_said_to() {
     let (law, n) = (roulette(0.83), 100_000);
@@ -497,8 +506,10 @@ fn the_wrapped_variance_survives_the_extremes() {
     assert_eq!(wrapped(1.0, 1e200, 3.0), 3.0); // μ² alone would overflow
     assert_eq!(wrapped(NEARLY_ONE, 1.0, 0.0), 1.1102230246251568e-16);
     assert_relative_eq!(wrapped(1e-300, 1e-200, 0.0), 1e-100, epsilon = 0.0, max_relative = 1e-15);
-    assert_relative_eq!(wrapped(1e-310, 0.01, 0.0), 1e306, epsilon = 0.0, max_relative = 1e-13); // 1/p would overflow
-    assert_relative_eq!(wrapped(5e-310, 0.1, 0.0), 2e307, epsilon = 0.0, max_relative = 1e-13); // and μ/p, too
+    // 1/p would overflow
+    assert_relative_eq!(wrapped(1e-310, 0.01, 0.0), 1e306, epsilon = 0.0, max_relative = 1e-13);
+    // and μ/p, too
+    assert_relative_eq!(wrapped(5e-310, 0.1, 0.0), 2e307, epsilon = 0.0, max_relative = 1e-13);
     assert_eq!(wrapped(1e-310, 1.0, 0.0), f64::INFINITY);
     assert_eq!(wrapped(1e-310, 0.0, 0.0), 0.0);
 }
@@ -693,7 +704,8 @@ fn degenerate_models_have_their_documented_answers() {
         assert_eq!(dark.roulette(q).unwrap().variance(), 0.0); // for q ≤ ρ², too
     }
 
-    let bright = light(0.8, 1.0); // every vertex sees the light: variance × cost = A/(q − ρ²) falls up to q = 1
+    // every vertex sees the light: variance × cost = A/(q − ρ²) falls up to q = 1
+    let bright = light(0.8, 1.0);
     assert_eq!(bright.optimum(), 1.0);
     assert!(bright.roulette(1.0).is_err());
     let at = |q| bright.roulette(q).map(|paths| paths.variance() * paths.cost()).unwrap();
@@ -718,14 +730,16 @@ fn degenerate_models_have_their_documented_answers() {
     let half = light(0.5, 0.5);
     assert_eq!(half.roulette(0.25).unwrap().variance(), f64::INFINITY);
     assert!(half.roulette(0.25 + f64::EPSILON).unwrap().variance().is_finite());
-    // by mpmath: q − ρ² has digits that q − fl(ρ²) has not; and ρ² may underflow where its ratio to q does not
+    // by mpmath: q − ρ² has digits that q − fl(ρ²) has not; and ρ² may underflow where its ratio to q does
+    // not
     for (rho, q, variance) in [(0.7, 0.49, 1.53247487320246e16), (1e-160, 4e-320, 0.4166691406627938)] {
         let found = light(rho, 0.5).roulette(q).unwrap().variance();
         assert_relative_eq!(found, variance, epsilon = 0.0, max_relative = 2e-15);
     }
 }
 
-/// E[S²] = Σⱼ Σₖ wⱼ wₖ P(N ≥ max(j, k)) E[Vⱼ Vₖ] with wₖ P(N ≥ k) = ρᵏ, summed term by term until nothing is left to add.
+/// E[S²] = Σⱼ Σₖ wⱼ wₖ P(N ≥ max(j, k)) E[Vⱼ Vₖ] with wₖ P(N ≥ k) = ρᵏ, summed term by term until nothing is
+/// left to add.
 fn second_moment(rho: f64, v: f64, q: f64) -> f64 {
     // ρᵏ wₖ and ρᵏ Σ wⱼ over the j before k
     let (mut alone, mut with_earlier, mut sum) = (1.0, 0.0, 0.0);
@@ -750,7 +764,8 @@ proptest! {
         prop_assert!((model.mean() - mean).abs() <= 1e-12 * mean);
         let variance = second_moment(rho, v, q) - mean * mean;
         let found = model.roulette(q)?.variance();
-        prop_assert!((found - variance).abs() <= 1e-11 * (variance + mean * mean), "{} for {}", found, variance);
+        prop_assert!((found - variance).abs() <= 1e-11 * (variance + mean * mean), "{} for \
+            {}", found, variance);
 
         let truncated: TruncatedPaths = model.truncated(max_k)?;
         let powers = || (0..=max_k as i32).map(|k| rho.powi(k));
@@ -766,7 +781,8 @@ proptest! {
     fn the_optimum_is_the_least_and_the_root(rho in 0.01..0.99, v in 0.01..0.99, other in 0.0..1.0) {
         let model = light(rho, v);
         let best = model.optimum();
-        let at = |q: f64| model.roulette(q).map(|paths| paths.variance() * paths.cost()).unwrap_or(f64::INFINITY);
+        let at = |q: f64| model.roulette(q).map(|paths|
+            paths.variance() * paths.cost()).unwrap_or(f64::INFINITY);
         prop_assert!(at(best) <= at(other) * (1.0 + 1e-14));
         prop_assert!(at(best) <= at(best * (1.0 + 1e-3)) && at(best) <= at(best * (1.0 - 1e-3)));
         let (a, b) = ((v * rho / (1.0 - rho)).powi(2), v * (1.0 - v));
@@ -775,9 +791,11 @@ proptest! {
         prop_assert!(terms.iter().sum::<f64>().abs() <= 1e-14 * size);
     }
 
-    /// At the crossing both errors are equal; a crossing of 0 means that roulette is the better one from the start.
+    /// At the crossing both errors are equal; a crossing of 0 means that roulette is the better one from the
+    /// start.
     #[test]
-    fn errors_are_equal_at_the_crossing(rho in 0.01..0.95, v in 0.01..0.99, room in 0.01..0.99, max_k in 0u64..60) {
+    fn errors_are_equal_at_the_crossing(rho in 0.01..0.95, v in 0.01..0.99, room in 0.01..0.99,
+        max_k in 0u64..60) {
         let model = light(rho, v);
         let q = rho * rho + room * (1.0 - rho * rho);
         let (paths, truncated) = (model.roulette(q)?, model.truncated(max_k)?);
@@ -823,7 +841,8 @@ fn light_paths_have_their_exact_mean_variance_and_cost() {
     }
 }
 
-/// The mean square errors at C = 450 vertices: 50 paths of 9, and 90 paths of 5 on average, both simulated 40,000 times.
+/// The mean square errors at C = 450 vertices: 50 paths of 9, and 90 paths of 5 on average, both simulated
+/// 40,000 times.
 #[test]
 fn mean_square_errors_are_those_of_simulated_runs() {
     let model = light(0.8, 0.5);
@@ -845,7 +864,8 @@ proptest! {
 
     /// Unbiased for any ρ, v, q and K, at 30,000 draws: caught is a bias of 0.08 standard deviations.
     #[test]
-    fn light_paths_are_unbiased(rho in 0.0..0.9, v in 0.1..0.9, room in 0.0..1.0, max_k in 0u64..20, s in any::<u64>()) {
+    fn light_paths_are_unbiased(rho in 0.0..0.9, v in 0.1..0.9, room in 0.0..1.0, max_k in 0u64..20,
+        s in any::<u64>()) {
         let model = light(rho, v);
         let q = rho.max(0.1) + room * (0.95 - rho.max(0.1));
         let (paths, truncated, n) = (model.roulette(q)?, model.truncated(max_k)?, 30_000.0);
@@ -856,8 +876,9 @@ proptest! {
     }
 }
 
-/// P(Σ of `paths` draws = s) for s < `limit`, ρ/q = 4 and v = ½: a draw is the sum of the powers of 4 that were seen, so
-/// P(0) = Σ qⁿ(1 − q)2⁻ⁿ⁻¹ = 4/9, P(s) = 4/9·10⁻ᵗ for an s whose digits to base 4 are 0 and 1, t the place of the first.
+/// P(Σ of `paths` draws = s) for s < `limit`, ρ/q = 4 and v = ½: a draw is the sum of the powers of 4 that
+/// were seen, so P(0) = Σ qⁿ(1 − q)2⁻ⁿ⁻¹ = 4/9, P(s) = 4/9·10⁻ᵗ for an s whose digits to base 4 are 0 and 1,
+/// t the place of the first.
 fn law_of_sums(paths: u32, limit: usize) -> Vec<f64> {
     let mut draw = vec![0.0; limit];
     for (s, p) in draw.iter_mut().enumerate() {
@@ -881,11 +902,13 @@ fn law_of_sums(paths: u32, limit: usize) -> Vec<f64> {
     sums
 }
 
-/// The sheet's q = 1/5 at ρ = 4/5: unbiased, of infinite variance, and usually too dark. A demonstration: no z-test holds here.
+/// The sheet's q = 1/5 at ρ = 4/5: unbiased, of infinite variance, and usually too dark. A demonstration: no
+/// z-test holds here.
 ///
-/// A draw is a whole number, so the exact law of the mean of 1000 paths is a power of a polynomial; the simulation of 40,000
-/// such means is held against it by a DKW band of 0.019. Coverage of the 95 % intervals is held against 0.38544, measured by another
-/// program (in C, with another generator, 10⁶ runs), with both binomial errors: a coverage off by 0.034 is caught.
+/// A draw is a whole number, so the exact law of the mean of 1000 paths is a power of a polynomial; the
+/// simulation of 40,000 such means is held against it by a DKW band of 0.019. Coverage of the 95 % intervals
+/// is held against 0.38544, measured by another program (in C, with another generator, 10⁶ runs), with both
+/// binomial errors: a coverage off by 0.034 is caught.
 #[test]
 fn a_fifth_is_unbiased_but_usually_too_dark() {
     let (truth, paths, runs) = (2.5, 1000, 40_000);
@@ -899,7 +922,8 @@ fn a_fifth_is_unbiased_but_usually_too_dark() {
             Some(*sum)
         })
         .collect();
-    // the worksheet's own numbers are simulated and rounded: by 3 std errors of 10⁴ runs and half of the last digit
+    // the worksheet's own numbers are simulated and rounded: by 3 std errors of 10⁴ runs and half of the last
+    // digit
     let too_dark = cdf[2499];
     assert!((too_dark - 0.845).abs() <= 0.0005 + 3.0 * (0.845f64 * 0.155 / 1e4).sqrt(), "{too_dark}");
     let median = cdf.iter().position(|p| *p >= 0.5).unwrap() as f64 / f64::from(paths);
@@ -934,11 +958,12 @@ fn a_fifth_is_unbiased_but_usually_too_dark() {
     assert!((coverage - 0.385).abs() <= Z * error + 0.0005, "{coverage}");
 }
 
-/// The 95 % interval of n draws covers the truth in 94 to 96 % of 10,000 seeds, for every estimator of a finite variance that answers a
-/// question. n = 1000 is enough for all of them: skewness γ ≤ 2.7 lowers the coverage by at most about γ²/4n = 0.2 % (Edgeworth's expansion).
+/// The 95 % interval of n draws covers the truth in 94 to 96 % of 10,000 seeds, for every estimator of a
+/// finite variance that answers a question. n = 1000 is enough for all of them: skewness γ ≤ 2.7 lowers the
+/// coverage by at most about γ²/4n = 0.2 % (Edgeworth's expansion).
 ///
-/// The share's own std error is 0.22 %, so at the fixed seed the bounds hold for certain, and fresh seeds are given
-/// 7 std errors and 0.5 % for skewness and for the steps of whole-numbered draws.
+/// The share's own std error is 0.22 %, so at the fixed seed the bounds hold for certain, and fresh seeds are
+/// given 7 std errors and 0.5 % for skewness and for the steps of whole-numbered draws.
 #[test]
 fn intervals_cover_the_truth() {
     let room = if std::env::var_os("UNBIASED_SEED").is_some() { 0.0204 } else { 0.01 };

@@ -42,8 +42,8 @@ fn seeds_and_blocks_are_pinned_bit_for_bit() {
     assert_eq!(uniforms.mean().to_bits(), GOLDEN_MEAN, "{:#x}", uniforms.mean().to_bits());
 }
 
-/// Computed by a separate program from the definition: SplitMix64's finaliser over seed and block, then xoshiro256++; the
-/// mean in exact integers, rounded once.
+/// Computed by a separate program from the definition: SplitMix64's finaliser over seed and block, then
+/// xoshiro256++; the mean in exact integers, rounded once.
 const GOLDEN: [[u64; 2]; 4] = [
     [0x56b1452f3b256cae, 0x4323aaaa00a3fffa],
     [0xe31fae9cc2093772, 0x98f20772f1a6892],
@@ -52,7 +52,8 @@ const GOLDEN: [[u64; 2]; 4] = [
 ];
 const GOLDEN_MEAN: u64 = 0x3fe0030f7a614cdc;
 
-/// The generators of a block, by the same separate program: draw i takes its numbers k·2⁻⁵³ from generator i mod 32.
+/// The generators of a block, by the same separate program: draw i takes its numbers k·2⁻⁵³ from generator i
+/// mod 32.
 #[test]
 fn numbers_side_by_side_are_pinned_bit_for_bit() {
     for (seed, block, expected) in GOLDEN_LANES {
@@ -91,8 +92,9 @@ const GOLDEN_LANES: [(u64, u64, [u64; 5]); 3] = [
     ),
 ];
 
-/// No two of a block's 32 generators, nor of its neighbours', have a word in common among their first 32: by chance with probability 1e-8 (53 bits each
-/// are seen, 4e4 words), for fresh seeds. And pairs from neighbouring places are uniform in the square: 64² cells of 2.6e5 pairs, whose χ² has mean 4095 and
+/// No two of a block's 32 generators, nor of its neighbours', have a word in common among their first 32: by
+/// chance with probability 1e-8 (53 bits each are seen, 4e4 words), for fresh seeds. And pairs from
+/// neighbouring places are uniform in the square: 64² cells of 2.6e5 pairs, whose χ² has mean 4095 and
 /// deviation 90; 7 deviations (a tail below 1e-10) catch cells that are 17 % off on average.
 #[test]
 fn generators_side_by_side_share_nothing() {
@@ -118,9 +120,10 @@ fn generators_side_by_side_share_nothing() {
     }
 }
 
-/// Any two of 64 × 64 neighbouring (seed, block) pairs: no word shared among their first 64, and half of the bits differ.
-/// 2.6e5 words of 64 bits collide by chance with probability 2e-9 at most, for fresh seeds; with the fixed seed it is certain not to.
-/// Each pair of first words differs in 32 ± 4 bits; the mean over 4032 neighbours has std error 0.063, 7 of them 0.44 (2.6e-12).
+/// Any two of 64 × 64 neighbouring (seed, block) pairs: no word shared among their first 64, and half of the
+/// bits differ. 2.6e5 words of 64 bits collide by chance with probability 2e-9 at most, for fresh seeds; with
+/// the fixed seed it is certain not to. Each pair of first words differs in 32 ± 4 bits; the mean over 4032
+/// neighbours has std error 0.063, 7 of them 0.44 (2.6e-12).
 #[test]
 fn neighbouring_seeds_and_blocks_share_nothing() {
     let base = common::seed(0);
@@ -237,8 +240,8 @@ fn an_empty_budget_is_an_error() {
     }
 }
 
-/// The pilot's variance of 10⁶ draws is known to 0.3 %, so the std error reached is within 2 % (7 of its std errors) of the one asked for, if that
-/// takes more draws than the pilot.
+/// The pilot's variance of 10⁶ draws is known to 0.3 %, so the std error reached is within 2 % (7 of its std
+/// errors) of the one asked for, if that takes more draws than the pilot.
 #[test]
 fn a_budget_of_error_reaches_it() {
     let uniform = from_fn(|rng| 1.0 + rng.uniform());
@@ -268,7 +271,8 @@ fn the_pilot_is_discarded() {
     assert_eq!(outcome.cost.random_numbers, draws + outcome.pilot.unwrap().draws());
 }
 
-/// What the pilot saw of rare values, fewer draws than its own might miss: their error bar would be too good to be true.
+/// What the pilot saw of rare values, fewer draws than its own might miss: their error bar would be too good
+/// to be true.
 #[test]
 fn an_error_that_is_easily_reached_takes_as_many_draws_as_the_pilot() {
     let rare = from_fn(|rng| if rng.uniform() < 1e-3 { 1.0 } else { 0.0 });
@@ -283,8 +287,9 @@ fn an_error_that_is_easily_reached_takes_as_many_draws_as_the_pilot() {
     assert_eq!(outcome.estimate.draws(), 100);
 }
 
-/// Without any variance a pilot gives up after 2²⁴ draws, and what follows is of 2²⁰. A value that comes up once in 10⁶ draws, which
-/// the first 2²⁰ may miss, is missed by 2²⁴ with probability 5e-8; with the fixed seeds it is not.
+/// Without any variance a pilot gives up after 2²⁴ draws, and what follows is of 2²⁰. A value that comes up
+/// once in 10⁶ draws, which the first 2²⁰ may miss, is missed by 2²⁴ with probability 5e-8; with the fixed
+/// seeds it is not.
 #[test]
 fn a_pilot_without_variance_ends_early_but_not_at_once() {
     let still = from_fn(|rng| rng.uniform() * 0.0 + 0.1);
@@ -315,7 +320,8 @@ fn what_is_out_of_reach_is_said_in_few_digits() {
     // σ² = 1/12: 8.3e10 draws, from a pilot whose variance is right to 0.5 %
     assert_eq!(
         said(1e-6),
-        "a std error of 1e-6 takes about 8.3e10 draws, more than the limit of 1000000000: ask for a larger error, allow more draws, or give a time"
+        "a std error of 1e-6 takes about 8.3e10 draws, more than the limit of 1000000000: ask for a larger \
+         error, allow more draws, or give a time"
     );
     assert!(said(1e-300).starts_with("a std error of 1e-300 takes more than 1e300 draws, more than"));
     // to three digits: 1.23e-6
@@ -405,7 +411,8 @@ impl Estimator for Wide {
     }
 }
 
-/// E[2U] = 1, std error √(1/3/10⁵): 7 of them is a false alarm of 2.6e-12 and catches a bias of 1.3 %; `draw` would give 1/2.
+/// E[2U] = 1, std error √(1/3/10⁵): 7 of them is a false alarm of 2.6e-12 and catches a bias of 1.3 %; `draw`
+/// would give 1/2.
 #[test]
 fn a_run_uses_fill_through_references_and_boxes() {
     let direct = estimate(&Wide, Budget::Draws(100_000), common::seed(10)).unwrap();
@@ -462,7 +469,8 @@ impl Ticking {
     }
 }
 
-/// Draws of 1 ns to 10 ms by a clock of their own: within a tenth of the time, or a draw where those are longer than that.
+/// Draws of 1 ns to 10 ms by a clock of their own: within a tenth of the time, or a draw where those are
+/// longer than that.
 #[test]
 fn a_budget_of_time_is_kept_whatever_a_draw_costs() {
     for time in [1_000_000, 100_000_000, 3_000_000_000u64] {
@@ -491,9 +499,10 @@ fn a_budget_of_time_is_kept_whatever_a_draw_costs() {
     }
 }
 
-/// Draws that take the longer the larger they are: a run that stopped by the clock would favour the small ones. 10⁴ seeds of
-/// some 10 draws each: |z| ≥ 6.5 is a false alarm of 8e-11. The std error is 0.0039, so that a bias of 5 % is seen with near
-/// certainty (z = 12.8). A pilot that takes the run's own draws has one of 14 % here.
+/// Draws that take the longer the larger they are: a run that stopped by the clock would favour the small
+/// ones. 10⁴ seeds of some 10 draws each: |z| ≥ 6.5 is a false alarm of 8e-11. The std error is 0.0039, so
+/// that a bias of 5 % is seen with near certainty (z = 12.8). A pilot that takes the run's own draws has one
+/// of 14 % here.
 #[test]
 fn a_budget_of_time_is_unbiased_where_work_depends_on_the_value() {
     let mut means = Estimate::new();

@@ -22,7 +22,8 @@ fn part(estimator: &dyn Estimator, draws: u64, seed: u64, [k, of]: [u64; 2]) -> 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Any number of shards of any run, in any order, on any number of threads, have the bits of the whole run, and its cost.
+    /// Any number of shards of any run, in any order, on any number of threads, have the bits of the whole
+    /// run, and its cost.
     #[test]
     fn shards_make_the_whole_run(
         draws in prop_oneof![1u64..200, 1u64..70_000, 500_000u64..3_000_000],
@@ -76,7 +77,8 @@ fn shards_that_make_no_run_are_refused() {
     assert!(refused([u64::MAX, u64::MAX], Budget::Draws(20)).is_ok());
 }
 
-// ---- the examples' options -----------------------------------------------------------------------------------------
+// ---- the examples' options
+// -----------------------------------------------------------------------------------------
 
 fn example(name: &str, arguments: &[&str], folder: &Path) -> Output {
     let test = std::env::current_exe().unwrap();

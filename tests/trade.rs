@@ -53,7 +53,8 @@ fn order(comparison: &Comparison) -> Vec<(&str, usize, bool)> {
         .collect()
 }
 
-/// False alarms: each z-test 7σ, 2.6e-12 (the draws, some 10⁵ of them, have bounded kurtosis). A variance that is wrong by 5 % is seen.
+/// False alarms: each z-test 7σ, 2.6e-12 (the draws, some 10⁵ of them, have bounded kurtosis). A variance
+/// that is wrong by 5 % is seen.
 #[test]
 fn variances_costs_and_means_are_those_of_the_rivals() {
     let uniform = from_fn(|rng| {
@@ -95,8 +96,10 @@ fn more_work_for_the_same_draw_is_less_efficient() {
     assert!(places[1].of_the_best < 0.5, "{places:?}");
 }
 
-/// The sum of squares of 1/(1 − U) is a stable law of index ½, whose largest term holds less than t of it with a probability of about e^(−0.85/t) (Darling 1952): at 10⁵ draws t = 0.0034, and at
-/// 10⁴ 0.026, e^(−32). A bounded draw never holds more than 12/n of it, to 7σ of the variance. More of it, for fixed numbers of draws, beside the code.
+/// The sum of squares of 1/(1 − U) is a stable law of index ½, whose largest term holds less than t of it
+/// with a probability of about e^(−0.85/t) (Darling 1952): at 10⁵ draws t = 0.0034, and at 10⁴ 0.026,
+/// e^(−32). A bounded draw never holds more than 12/n of it, to 7σ of the variance. More of it, for fixed
+/// numbers of draws, beside the code.
 #[test]
 fn a_heavy_tail_is_marked() {
     let heavy = from_fn(|rng| (1.0 - rng.uniform()).recip());
@@ -109,7 +112,8 @@ fn a_heavy_tail_is_marked() {
     assert!(found.ranking().iter().all(|place| place.rank == 1 || place.rival.name == "heavy"));
 }
 
-/// However slow the draws are beside the time asked for, there are two of them in each of 17 batches, and so few never have a heavy tail.
+/// However slow the draws are beside the time asked for, there are two of them in each of 17 batches, and so
+/// few never have a heavy tail.
 #[test]
 fn slow_draws_are_few() {
     for seed in 1..=20 {
@@ -225,7 +229,8 @@ fn a_ranking_says_which_differences_are_real() {
     assert!(comparison.to_string().contains("not told apart from the one above"));
 }
 
-/// A median's std error is 1.253 σ/√17, σ the distance of the quartiles over 1.349; two of them make √2 times that.
+/// A median's std error is 1.253 σ/√17, σ the distance of the quartiles over 1.349; two of them make √2 times
+/// that.
 #[test]
 fn the_spread_of_the_times_decides_what_is_real() {
     let width = 0.1;
@@ -327,7 +332,8 @@ fn slopes_are_those_of_a_series() {
     assert_relative_eq!(slopes[2].unwrap(), -1.5, epsilon = 0.0, max_relative = 1e-12);
     assert!([0, 3, 4, 5, 6].iter().all(|index| slopes[*index].is_none()), "{slopes:?}");
 
-    // z ≤ 7. In a cell of width h = 1/s about (x, y) the variance of XY is (x² + y²) v + v² with v = h²/12; summed over the cells, (2v(s²/3 − 1/12) + s² v²)/s⁴
+    // z ≤ 7. In a cell of width h = 1/s about (x, y) the variance of XY is (x² + y²) v + v² with v = h²/12;
+    // summed over the cells, (2v(s²/3 − 1/12) + s² v²)/s⁴
     let exact = |s: f64| {
         let v = 1.0 / (12.0 * s * s);
         (2.0 * v * (s * s / 3.0 - 1.0 / 12.0) + s * s * v * v) / s.powi(4)
@@ -590,7 +596,8 @@ fn figures_leave_nothing_out_in_silence() {
     }
 }
 
-/// The reference in `examples/trade.rs` for all bounces in the sheet's scene: z ≤ 7, a false alarm in 4e11; at 2·10⁵ paths it sees what is wrong by 0.3 %.
+/// The reference in `examples/trade.rs` for all bounces in the sheet's scene: z ≤ 7, a false alarm in 4e11;
+/// at 2·10⁵ paths it sees what is wrong by 0.3 %.
 #[test]
 fn the_reference_for_all_bounces_is_right() {
     use unbiased::paths::room::{BoxRoom, Scene};
@@ -628,7 +635,8 @@ fn bad_input_is_an_error() {
     assert!(Genz::new(Family::Gaussian, [1.0, 1.0], [0.5, 1.5]).is_err());
 }
 
-/// ∫ f over [0, 1]² by the Gauss–Legendre rule of five points on 40 × 40 parts of each of the four rectangles that w divides the square into.
+/// ∫ f over [0, 1]² by the Gauss–Legendre rule of five points on 40 × 40 parts of each of the four rectangles
+/// that w divides the square into.
 fn quadrature(f: impl Fn(f64, f64) -> f64, w: [f64; 2]) -> f64 {
     let (inner, outer) =
         ((245.0 - 14.0 * 70f64.sqrt()).sqrt() / 21.0, (245.0 + 14.0 * 70f64.sqrt()).sqrt() / 21.0);

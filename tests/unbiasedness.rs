@@ -1,17 +1,21 @@
-//! Every estimator of the crate is unbiased: by section, with parameters and integrands that proptest chooses.
+//! Every estimator of the crate is unbiased: by section, with parameters and integrands that proptest
+//! chooses.
 //!
-//! A test is a row of [`TABLE`]: so many cases certified to within a thousandth, so many to within a hundredth, each by the sequential test of
-//! `check::Unbiased`, which must say *unbiased*; *undecided* fails. A relative bias of 1e-3 (1e-2 where only coarse cases stand) is caught in every
-//! run but for two in 10⁶. Estimators of at most two random numbers are integrated as well, by `check::exactly`: to 1e-9, over far more parameters, with
-//! no noise and no false alarm.
+//! A test is a row of [`TABLE`]: so many cases certified to within a thousandth, so many to within a
+//! hundredth, each by the sequential test of `check::Unbiased`, which must say *unbiased*; *undecided* fails.
+//! A relative bias of 1e-3 (1e-2 where only coarse cases stand) is caught in every run but for two in 10⁶.
+//! Estimators of at most two random numbers are integrated as well, by `check::exactly`: to 1e-9, over far
+//! more parameters, with no noise and no false alarm.
 //!
-//! Draws must be bounded to be certified. X ≥ 0 without a bound is tested through F(X) and min(X, c), whose means are known; roulette's
-//! paths are bounded for q > ρ, by q/(q − ρ), go through min(X, c) at q = ρ, and for q < ρ through \[X > 0\], which sees the coins but not the weights:
-//! a bounded function that sees them has no closed form there, and the weights are computed by the same line as for q > ρ.
+//! Draws must be bounded to be certified. X ≥ 0 without a bound is tested through F(X) and min(X, c), whose
+//! means are known; roulette's paths are bounded for q > ρ, by q/(q − ρ), go through min(X, c) at q = ρ, and
+//! for q < ρ through \[X > 0\], which sees the coins but not the weights: a bounded function that sees them
+//! has no closed form there, and the weights are computed by the same line as for q > ρ.
 //!
 //! # False alarms
-//! Each case and each comparison of distributions has [`ALPHA`]; [`OTHERS`] lists what the other test files state of themselves, and a test adds everything up.
-//! α is small because it is nearly free: a certificate takes 40 CV²/δ² draws whatever α is. That a right estimator stays undecided takes its sum to lie 8 std
+//! Each case and each comparison of distributions has [`ALPHA`]; [`OTHERS`] lists what the other test files
+//! state of themselves, and a test adds everything up. α is small because it is nearly free: a certificate
+//! takes 40 CV²/δ² draws whatever α is. That a right estimator stays undecided takes its sum to lie 8 std
 //! deviations off: less than 1e-14 a case, and counted with α.
 //!
 //! `UNBIASED_SEED=n` runs everything with fresh parameters and fresh draws.
@@ -36,7 +40,8 @@ use unbiased::rectangle::Rectangle;
 use unbiased::roulette::{LightModel, Roulette};
 use unbiased::{Density, Estimator, Stream, f_over_p, from_fn};
 
-// ---- what each test costs and certifies --------------------------------------------------------------------------
+// ---- what each test costs and certifies
+// --------------------------------------------------------------------------
 
 /// The probability that one case calls a right estimator biased, or cannot decide.
 const ALPHA: f64 = 1e-14;
@@ -47,7 +52,8 @@ const FINE: f64 = 1e-3;
 /// The bias that a coarse case certifies.
 const COARSE: f64 = 1e-2;
 
-/// A test's name, its cases at [`FINE`] and at [`COARSE`], and its comparisons of distributions, each at [`ALPHA`].
+/// A test's name, its cases at [`FINE`] and at [`COARSE`], and its comparisons of distributions, each at
+/// [`ALPHA`].
 type Row = (&'static str, u32, u32, u32);
 
 const TABLE: [Row; 35] = [
@@ -93,7 +99,8 @@ const TABLE: [Row; 35] = [
     ("roulette_paths_with_growing_weights", 0, 8, 0),
 ];
 
-/// False alarms of the other files with random tests, by their own account or, where they give only α, by the number of their tests.
+/// False alarms of the other files with random tests, by their own account or, where they give only α, by the
+/// number of their tests.
 const OTHERS: [(&str, f64); 13] = [
     ("inversion", 6e-11),
     ("rectangle", 3.6e-10),
@@ -186,7 +193,8 @@ fn log_range(low: f64, high: f64) -> impl Strategy<Value = f64> + Clone {
     (low.ln()..high.ln()).prop_map(f64::exp)
 }
 
-// ---- section 1 -----------------------------------------------------------------------------------------------------
+// ---- section 1
+// -----------------------------------------------------------------------------------------------------
 
 fn rates() -> impl Strategy<Value = f64> + Clone {
     log_range(1e-3, 1e3)
@@ -332,7 +340,8 @@ proptest! {
     }
 }
 
-// ---- section 2 -----------------------------------------------------------------------------------------------------
+// ---- section 2
+// -----------------------------------------------------------------------------------------------------
 
 /// A polynomial Σ c_ij sⁱ tʲ in s = (x − a)/(b − a) and t = (y − c)/(d − c), its coefficients 0 or more.
 #[derive(Debug, Clone, Copy)]
@@ -465,15 +474,18 @@ proptest! {
         let scale = rectangle.area() * coefficients.iter().map(most).sum::<f64>();
         let g = f.clone();
         assert_exactly(&rectangle.independent(&g), 2, integral, Some(variance), scale);
-        assert_exactly(&f_over_p(move |[x, y]: &[f64; 2]| f(*x, *y), rectangle), 2, integral, Some(variance), scale);
+        assert_exactly(&f_over_p(move |[x, y]: &[f64; 2]| f(*x, *y), rectangle), 2, integral, Some(variance),
+            scale);
         let one = exactly(&rectangle.all_pairs(&g, 1).unwrap(), 2);
         prop_assert!((one.unwrap().mean - integral).abs() <= 1e-9 * scale);
     }
 }
 
-// ---- section 3 -----------------------------------------------------------------------------------------------------
+// ---- section 3
+// -----------------------------------------------------------------------------------------------------
 
-/// A sky that depends on the direction in every way: c₀ + c₁ cos θ + c₂ cos^a θ + c₃ x² + c₄ (1 + y) + c₅ \[the half towards φ is lit\].
+/// A sky that depends on the direction in every way: c₀ + c₁ cos θ + c₂ cos^a θ + c₃ x² + c₄ (1 + y) + c₅
+/// \[the half towards φ is lit\].
 #[derive(Debug, Clone, Copy)]
 struct Sky {
     parts: [f64; 6],
@@ -490,7 +502,8 @@ impl Sky {
         c0 + c1 * z + c2 * power + c3 * x * x + c4 * (1.0 + y) + if lit { c5 } else { 0.0 }
     }
 
-    /// ∫ L cos θ/π dω = ∫ L̄ 2z dz with L̄ the mean over φ: z gives 2/3, zᵃ 2/(a + 2), x² 1/4, y 0, a half 1/2.
+    /// ∫ L cos θ/π dω = ∫ L̄ 2z dz with L̄ the mean over φ: z gives 2/3, zᵃ 2/(a + 2), x² 1/4, y 0, a half
+    /// 1/2.
     fn mean(&self) -> f64 {
         let [c0, c1, c2, c3, c4, c5] = self.parts;
         c0 + c1 * 2.0 / 3.0 + c2 * 2.0 / (self.a + 2.0) + c3 / 4.0 + c4 + c5 / 2.0
@@ -511,7 +524,8 @@ fn skies() -> impl Strategy<Value = Sky> + Clone {
     let parts = prop_oneof![
         3 => prop::array::uniform6(0.0..1.0),
         // one alone
-        2 => (0..6usize, 0.1..10.0).prop_map(|(only, c)| std::array::from_fn(|i| if i == only { c } else { 0.0 })),
+        2 => (0..6usize, 0.1..10.0).prop_map(|(only,
+            c)| std::array::from_fn(|i| if i == only { c } else { 0.0 })),
     ];
     (parts, 0.0..6.0, turns()).prop_map(|(parts, a, phi)| Sky { parts, a, phi })
 }
@@ -627,7 +641,8 @@ proptest! {
     }
 }
 
-// ---- section 4 -----------------------------------------------------------------------------------------------------
+// ---- section 4
+// -----------------------------------------------------------------------------------------------------
 
 /// Directions drawn uniformly or by cosine, and the light by chance or sampled.
 fn ways() -> impl Strategy<Value = (Hemisphere, FindLight)> + Clone {
@@ -653,8 +668,8 @@ fn paths(scene: Scene, bounces: Bounces, (directions, light): (Hemisphere, FindL
     Paths::new(BoxRoom::new(scene).unwrap(), bounces, directions, light).unwrap()
 }
 
-/// From anywhere on the cube's top, 3 m below the light: f_r L_e A cos θ cos θ′/r² ≤ ρ L_e A/9π. The truth is a sum of four rectangles that
-/// have a corner above p (Howell's B-3).
+/// From anywhere on the cube's top, 3 m below the light: f_r L_e A cos θ cos θ′/r² ≤ ρ L_e A/9π. The truth is
+/// a sum of four rectangles that have a corner above p (Howell's B-3).
 #[test]
 fn paths_of_one_bounce() {
     let places = (-0.5..0.5, -0.5..0.5, 0.8..2.0);
@@ -697,7 +712,8 @@ fn two_bounces(scene: Scene) -> f64 {
     BoxRoom::new(scene).unwrap().two_bounces().unwrap()
 }
 
-/// f_r L_e A cos θ cos θ′/r² at a wall, a = 2 − h or more from the light, where cos θ cos θ′/r² is az/(a² + z²)² at most, and that at most 0.325/a². With ρ L_e for the cube's.
+/// f_r L_e A cos θ cos θ′/r² at a wall, a = 2 − h or more from the light, where cos θ cos θ′/r² is az/(a² +
+/// z²)² at most, and that at most 0.325/a². With ρ L_e for the cube's.
 fn most_of_two_bounces(scene: Scene, directions: Hemisphere) -> f64 {
     let (h, scale) = (scene.light_half_width, scene.cube_albedo * scene.wall_albedo * scene.radiance);
     scale * most_weight(directions) * 4.0 * h * h / PI * 0.325 / (2.0 - h).powi(2)
@@ -776,7 +792,8 @@ fn albedos_of_furnaces() -> impl Strategy<Value = f64> + Clone {
     prop_oneof![prop::sample::select(vec![0.2, 0.5, 0.8, 0.99]), 0.05..0.95]
 }
 
-/// All light by roulette: X ≤ Σ (wρ/q)ʲ = q/(q − wρ) for q > wρ, w = 1 with cosine directions and 2 with uniform ones, which are taken where that leaves room for q.
+/// All light by roulette: X ≤ Σ (wρ/q)ʲ = q/(q − wρ) for q > wρ, w = 1 with cosine directions and 2 with
+/// uniform ones, which are taken where that leaves room for q.
 #[test]
 fn furnaces_by_roulette() {
     let parameters = (albedos_of_furnaces(), ways(), 0.2..0.9, any::<bool>());
@@ -790,8 +807,8 @@ fn furnaces_by_roulette() {
     });
 }
 
-/// All light by weight: with cosine directions a path goes on with probability ρ and weight 1, so a draw is the number of its vertices, P(X > j) = ρʲ, and
-/// E min(X, c) = Σ ρʲ for j < c.
+/// All light by weight: with cosine directions a path goes on with probability ρ and weight 1, so a draw is
+/// the number of its vertices, P(X > j) = ρʲ, and E min(X, c) = Σ ρʲ for j < c.
 #[test]
 fn furnaces_by_weight() {
     let parameters = (albedos_of_furnaces(), ways(), 1..9i32, any::<bool>());
@@ -816,7 +833,8 @@ fn reflected_light() {
     });
 }
 
-// ---- section 5 -----------------------------------------------------------------------------------------------------
+// ---- section 5
+// -----------------------------------------------------------------------------------------------------
 
 #[test]
 fn roulette_on_an_estimator() {
@@ -917,7 +935,8 @@ fn sees_light(visibility: f64, q: f64) -> f64 {
     visibility / (1.0 - q * (1.0 - visibility))
 }
 
-/// q = ρ: X counts the vertices that see the light, P(X ≥ j) = r(qr)^(j−1), and E min(X, c) is the sum of these over j ≤ c.
+/// q = ρ: X counts the vertices that see the light, P(X ≥ j) = r(qr)^(j−1), and E min(X, c) is the sum of
+/// these over j ≤ c.
 #[test]
 fn roulette_paths_with_constant_weights() {
     let parameters = (0.05..0.9, visibilities(), 1..8i32);

@@ -10,7 +10,8 @@ fn variant(name: &str) -> Options {
     Options::default().variant(name, questions()).unwrap()
 }
 
-/// Every wrong answer is 5 % off the right one, every classic one 5 % off the others, no parameter hides a mistake, and numbers are short.
+/// Every wrong answer is 5 % off the right one, every classic one 5 % off the others, no parameter hides a
+/// mistake, and numbers are short.
 #[test]
 fn a_thousand_variants_are_fair() {
     let differ = |a: f64, b: f64| (a - b).abs() >= 0.05 * a.abs().max(b.abs()) && a != b;

@@ -1,12 +1,14 @@
-//! Every closed form against tables of its true values, in units in the last place (ulp) of the correctly rounded one.
+//! Every closed form against tables of its true values, in units in the last place (ulp) of the correctly
+//! rounded one.
 //!
-//! `data/extremes.csv` holds the worksheet's extremes, `data/closed_forms.csv` every public closed form at inputs of every size
-//! (made by `data/closed_forms.py`, which makes as many more as asked for). Inputs are taken from their bits. The closed forms of
-//! [`unbiased::rectangle::Integrand`], which promise 12 digits only, have their tables in `rectangle.rs`.
+//! `data/extremes.csv` holds the worksheet's extremes, `data/closed_forms.csv` every public closed form at
+//! inputs of every size (made by `data/closed_forms.py`, which makes as many more as asked for). Inputs are
+//! taken from their bits. The closed forms of [`unbiased::rectangle::Integrand`], which promise 12 digits
+//! only, have their tables in `rectangle.rs`.
 //!
 //! ```sh
-//! cargo test --release --test vectors -- --nocapture       # rows passed and worst ulp of each function
-//! UNBIASED_VECTORS=more.csv cargo test --release --test vectors -- --nocapture      # another table of this form
+//! cargo test --release --test vectors -- --nocapture  # rows passed and worst ulp of each function
+//! UNBIASED_VECTORS=more.csv cargo test --release --test vectors -- --nocapture  # another table
 //! ```
 
 mod common;
@@ -244,7 +246,8 @@ fn evaluate(row: &Row) -> Result<Found, Error> {
             let [along, _] = across.sample(&mut rng);
             let [_, upwards] = up.sample(&mut rng);
             assert_eq!(along, upwards);
-            // a drawn point lies on a grid: where lo + u(hi − lo) cancels it is exact to the last place of the larger of lo and itself
+            // a drawn point lies on a grid: where lo + u(hi − lo) cancels it is exact to the last place of
+            // the larger of lo and itself
             Within(along, along.abs().max(low.abs()))
         }
         "polygon" | "polygon_compact" => {
@@ -415,8 +418,8 @@ fn check(name: &str, table: &str) -> Tally {
 #[test]
 fn the_worksheets_extremes_come_out() {
     let all = check("extremes.csv", include_str!("data/extremes.csv"));
-    // refused: p_rr = 0 (18 rows), rectangles outside f64 (91), sums of a furnace without an end or of more than 10⁹ terms (13);
-    // without a function: the number of bounces at a U that no generator gives
+    // refused: p_rr = 0 (18 rows), rectangles outside f64 (91), sums of a furnace without an end or of more
+    // than 10⁹ terms (13); without a function: the number of bounces at a U that no generator gives
     let Tally { rows, passed, refused, exact_only, no_function, .. } = all;
     assert_eq!([rows, passed, refused, exact_only, no_function], [683, 555, 122, 2, 4]);
 }

@@ -1,4 +1,5 @@
-//! Estimators that are filled many at a time: the same distribution as one at a time, the closed forms, the same bits on any number of threads, and pinned.
+//! Estimators that are filled many at a time: the same distribution as one at a time, the closed forms, the
+//! same bits on any number of threads, and pinned.
 
 mod common;
 
@@ -25,8 +26,9 @@ fn every_way(bounces: Bounces) -> Vec<Paths> {
     all
 }
 
-/// Light after one bounce, 8 times the form factor of the light, and after two by quadrature: 10⁷ paths in each of four ways, z ≤ 8 (1.2e-15 each). With light sampled
-/// that catches a bias of 6e-5 (one bounce) and 2.4e-3 (two). In `f32` 10⁻⁵ more is allowed, which is more than its rounding.
+/// Light after one bounce, 8 times the form factor of the light, and after two by quadrature: 10⁷ paths in
+/// each of four ways, z ≤ 8 (1.2e-15 each). With light sampled that catches a bias of 6e-5 (one bounce) and
+/// 2.4e-3 (two). In `f32` 10⁻⁵ more is allowed, which is more than its rounding.
 #[test]
 fn paths_side_by_side_have_the_closed_forms() {
     for (bounces, truth) in [(1, 0.272_854_359_197_692_6), (2, 0.039_903_921_548_169_116)] {
@@ -42,7 +44,8 @@ fn paths_side_by_side_have_the_closed_forms() {
     }
 }
 
-/// In the furnace every path of k bounces has the same light, ρ of the cube's top times ρ of the walls it sees: nothing is off.
+/// In the furnace every path of k bounces has the same light, ρ of the cube's top times ρ of the walls it
+/// sees: nothing is off.
 #[test]
 fn the_furnace_is_exact_side_by_side() {
     let furnace = Scene { light_half_width: 0.0, emission: 1.0, ..Scene::default() };
@@ -54,9 +57,11 @@ fn the_furnace_is_exact_side_by_side() {
     }
 }
 
-/// All light in the furnace is 1/(1 − ρ), by roulette and by weight, on the loop that every run uses: a million paths each, z ≤ 8 (1.2e-15 each). A bias of 1.2 % is caught
-/// with cosine directions, of 3 % with uniform ones. Those have a finite variance for ρ² < ¾, and at ρ = 0.8 no fourth moment: X beyond x has a probability of order x^(−2.9), so the
-/// part of the mean that a million draws are likely to miss is of order 0.1 std errors, and the ninth one is left to it.
+/// All light in the furnace is 1/(1 − ρ), by roulette and by weight, on the loop that every run uses: a
+/// million paths each, z ≤ 8 (1.2e-15 each). A bias of 1.2 % is caught with cosine directions, of 3 % with
+/// uniform ones. Those have a finite variance for ρ² < ¾, and at ρ = 0.8 no fourth moment: X beyond x has a
+/// probability of order x^(−2.9), so the part of the mean that a million draws are likely to miss is of order
+/// 0.1 std errors, and the ninth one is left to it.
 #[test]
 fn all_light_in_the_furnace_side_by_side() {
     let mut n = 0;
@@ -88,7 +93,8 @@ fn all_light_in_the_furnace_side_by_side() {
     }
 }
 
-/// Light of any size that a scene may have is the same light: a power of two more of it, and every draw has the same bits, in `f32` too, and through lights as small.
+/// Light of any size that a scene may have is the same light: a power of two more of it, and every draw has
+/// the same bits, in `f32` too, and through lights as small.
 #[test]
 fn light_of_any_size_is_the_same_light() {
     let fill = |estimator: &dyn Estimator| {
@@ -132,7 +138,8 @@ fn what_leaves_f32_is_an_error() {
     assert_eq!(
         of(dark(0.25), Bounces::Exactly(64)).unwrap_err(),
         format!(
-            "the least albedo, to the power of the bounces, must be at least 1e-25 in single precision, not {}",
+            "the least albedo, to the power of the bounces, must be at least 1e-25 in single precision, not \
+             {}",
             0.25f64.powi(64)
         )
     );
@@ -143,7 +150,8 @@ fn what_leaves_f32_is_an_error() {
     assert_eq!(of(dark(1e-13), Bounces::UpTo(1)), Ok(()));
     let faint = Scene { emission: 1e-10, ..Scene::default() };
     assert!(of(faint, Bounces::UpTo(2)).unwrap_err().starts_with(
-        "the faces' emission, in parts of the light's, must be 0 or at least 1e-10 in single precision, not 0.0000000000314"
+        "the faces' emission, in parts of the light's, must be 0 or at least 1e-10 in single precision, not \
+         0.0000000000314"
     ));
     assert_eq!(of(Scene { light_half_width: 0.0, ..faint }, Bounces::UpTo(2)), Ok(()));
     assert_eq!(of(Scene { radiance: 0.0, ..faint }, Bounces::UpTo(2)), Ok(()));
@@ -159,8 +167,9 @@ fn what_leaves_f32_is_an_error() {
     assert!(draws.iter().all(|draw| (draw / once - 1.0).abs() <= 1e-6), "{draws:?}");
 }
 
-/// The moments of 1 (mean) and 2 (mean square) of two estimators of the same distribution, z ≤ 8 of the difference. Paths' light up to three bounces is
-/// known to 0.02 % by 500,000 plain draws where it is sampled, and to 0.7 % by chance: 0.15 % and 5 % of it too much are caught.
+/// The moments of 1 (mean) and 2 (mean square) of two estimators of the same distribution, z ≤ 8 of the
+/// difference. Paths' light up to three bounces is known to 0.02 % by 500,000 plain draws where it is
+/// sampled, and to 0.7 % by chance: 0.15 % and 5 % of it too much are caught.
 #[test]
 fn drawn_and_filled_have_the_same_moments() {
     let mut pairs: Vec<(String, Box<dyn Estimator>)> = Vec::new();
@@ -244,7 +253,8 @@ fn wide_estimators_have_the_same_bits_for_any_number_of_threads() {
     }
 }
 
-/// What seed 2024 fills: the same bits in every release that does not say otherwise, and on every machine, whatever its vectors.
+/// What seed 2024 fills: the same bits in every release that does not say otherwise, and on every machine,
+/// whatever its vectors.
 #[test]
 fn what_is_filled_is_pinned_bit_for_bit() {
     for ((name, estimator), golden) in wide_ones().into_iter().zip(GOLDEN) {

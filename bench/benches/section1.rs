@@ -1,4 +1,5 @@
-//! Section 1: the exponential, filled and drawn, beside rand_distr's ziggurat. Times are those of 1,024 draws.
+//! Section 1: the exponential, filled and drawn, beside rand_distr's ziggurat. Times are those of 1,024
+//! draws.
 
 use divan::{Bencher, black_box};
 use rand::SeedableRng;

@@ -1,4 +1,5 @@
-//! Section 3: 1,024 directions under the light L_i = 1 + sin θ cos φ, and under cos² θ, which is a power and stays narrow.
+//! Section 3: 1,024 directions under the light L_i = 1 + sin θ cos φ, and under cos² θ, which is a power and
+//! stays narrow.
 
 use divan::Bencher;
 use unbiased::Stream;

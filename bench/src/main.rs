@@ -1,6 +1,7 @@
 //! One run of everything, peers too, and the table of ratios: `bench/run`.
 //!
-//! Ours and the peers' turns alternate, and each row takes the best of all turns: others may use the machine at the same time.
+//! Ours and the peers' turns alternate, and each row takes the best of all turns: others may use the machine
+//! at the same time.
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
@@ -38,7 +39,8 @@ const REPLICATES: f64 = 16.0;
 const SETS: [u64; 3] = [1 << 10, 1 << 14, 1 << 18];
 const SOBOL: [u64; 6] = [1 << 6, 1 << 8, 1 << 10, 1 << 12, 1 << 14, 1 << 16];
 
-/// A peer's paths: the best time of one, and all that was found of the variance of one over the mean's square.
+/// A peer's paths: the best time of one, and all that was found of the variance of one over the mean's
+/// square.
 #[derive(Default)]
 struct PeerPaths {
     seconds: Option<f64>,

@@ -1,4 +1,5 @@
-//! The whole worksheet: every question answered in closed form, by an estimator with its error bar, and in a picture, on one page.
+//! The whole worksheet: every question answered in closed form, by an estimator with its error bar, and in a
+//! picture, on one page.
 
 use std::process::ExitCode;
 

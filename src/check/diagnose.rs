@@ -323,7 +323,8 @@ impl Diagnosis {
             let (value, probe, draws) = (stuck.estimate.mean(), stuck.probe, stuck.estimate.draws());
             let more = 100 * draws;
             return format!(
-                "No verdict: all {draws} draws for “{probe}” are {value}, which is not the truth, but draws of rare large values could begin so. Take {more}, or look at your program."
+                "No verdict: all {draws} draws for “{probe}” are {value}, which is not the truth, but draws \
+                 of rare large values could begin so. Take {more}, or look at your program."
             );
         }
         let needed = self.measurements.iter().map(|of| {
@@ -332,7 +333,8 @@ impl Diagnosis {
         });
         let needed = needed.fold(0.0, f64::max);
         format!(
-            "Too uncertain to say: a std error is above a tenth of the truth. It takes some {needed:.1e} draws a probe; if the error does not fall then, the variance is infinite."
+            "Too uncertain to say: a std error is above a tenth of the truth. It takes some {needed:.1e} \
+             draws a probe; if the error does not fall then, the variance is infinite."
         )
     }
 }
@@ -348,7 +350,8 @@ impl fmt::Display for Diagnosis {
             Finding::Known => write!(f, "Not right. The ratios to the truth are consistent with:")?,
             Finding::Unknown => write!(
                 f,
-                "Not right, and none of the {} mistakes compared, of which most are a constant times another.",
+                "Not right, and none of the {} mistakes compared, of which most are a constant times \
+                 another.",
                 self.compared
             )?,
         }

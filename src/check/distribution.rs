@@ -36,7 +36,8 @@ pub enum Place {
     First(f64),
     /// The empirical cdf of the second uniform number at this value.
     Second(f64),
-    /// The share of points in this cell of the two uniform numbers, each cut into [`CELLS`] parts, counted from 0.
+    /// The share of points in this cell of the two uniform numbers, each cut into [`CELLS`] parts, counted
+    /// from 0.
     Cell(usize, usize),
 }
 
@@ -87,9 +88,10 @@ pub fn distributed_as(
     })
 }
 
-/// Compares drawn points of two dimensions with the density claimed for them. `unwarp` gives the two numbers that
-/// are independent and uniform if a point has that density: the cdf of its first coordinate, say, and that of the
-/// second given the first. Each is compared by the band of [`distributed_as`], and both together over 8 × 8 cells.
+/// Compares drawn points of two dimensions with the density claimed for them. `unwarp` gives the two numbers
+/// that are independent and uniform if a point has that density: the cdf of its first coordinate, say, and
+/// that of the second given the first. Each is compared by the band of [`distributed_as`], and both together
+/// over 8 × 8 cells.
 ///
 /// A cell of probability p in which a share p̂ of n points fell is refused where n·kl(p̂‖p) > ln(2k/α), k
 /// the number of cells, kl the relative entropy of two coins: Chernoff's bound, exact for every n and p,
@@ -216,7 +218,8 @@ impl fmt::Display for Agreement {
         };
         write!(
             f,
-            "distributed {verdict}: the largest difference, in {place}, is {:.2} of the one allowed (α = {:.0e}, {} draws); not seen: {}",
+            "distributed {verdict}: the largest difference, in {place}, is {:.2} of the one allowed (α = \
+             {:.0e}, {} draws); not seen: {}",
             self.strain, self.alpha, self.draws, self.unseen
         )
     }

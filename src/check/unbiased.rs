@@ -389,7 +389,8 @@ impl fmt::Display for Report {
                 let (ratio, error) = self.ratio();
                 write!(
                     f,
-                    "biased: {estimate} after {draws} draws, {ratio:.3} ± {error:.3} times the truth {truth}; \
+                    "biased: {estimate} after {draws} draws, {ratio:.3} ± {error:.3} times the truth \
+                     {truth}; \
                      a right estimator would be called so with probability {:.0e} at most",
                     self.alpha
                 )
@@ -397,7 +398,8 @@ impl fmt::Display for Report {
             Verdict::Undecided => {
                 write!(
                     f,
-                    "undecided after {draws} draws: {estimate}, the truth is {truth} and a difference of {:.1e} was to be seen",
+                    "undecided after {draws} draws: {estimate}, the truth is {truth} and a difference of \
+                     {:.1e} was to be seen",
                     self.tolerance
                 )
             }

@@ -2,7 +2,8 @@
 
 /// eˣ to 1.1 ulp where it is normal, 0 or +∞ where it leaves `f64`'s range, and NaN for NaN.
 ///
-/// With k the integer nearest to x/ln 2 and r = x − k ln 2: eˣ = 2ᵏ eʳ, |r| ≤ ½ ln 2, by Taylor's series of eʳ.
+/// With k the integer nearest to x/ln 2 and r = x − k ln 2: eˣ = 2ᵏ eʳ, |r| ≤ ½ ln 2, by Taylor's series of
+/// eʳ.
 ///
 /// ```
 /// assert_eq!(unbiased::fast::exp(0.0), 1.0);

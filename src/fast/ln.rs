@@ -2,7 +2,8 @@
 
 /// ln x of a positive, normal x (2.2e-308 or more) to 1 ulp; nothing meaningful of any other.
 ///
-/// With x = 2ᵏ(1 + f), √½ ≤ 1 + f < √2, and s = f/(2 + f): ln x = k ln 2 + 2s + ⅔s³ + …, by a polynomial in s² (Sun's fdlibm, `e_log.c`, 1993).
+/// With x = 2ᵏ(1 + f), √½ ≤ 1 + f < √2, and s = f/(2 + f): ln x = k ln 2 + 2s + ⅔s³ + …, by a polynomial in
+/// s² (Sun's fdlibm, `e_log.c`, 1993).
 ///
 /// ```
 /// assert_eq!(unbiased::fast::ln(1.0), 0.0);

@@ -1,12 +1,16 @@
-//! Functions and loops that go wide: plain sums, products and selections, which the compiler turns into vector instructions.
+//! Functions and loops that go wide: plain sums, products and selections, which the compiler turns into
+//! vector instructions.
 //!
-//! [`ln`], [`exp`], [`floor`] and [`sin_cos_of_turns`] are what drawing needs of a mathematical library, within 2 units of the last place and without a branch or a call, so
-//! that a loop over them is vectorised. The crate's own loops are compiled for each of a processor's instruction sets and chosen as the program runs; nothing has to be asked
-//! of the compiler. An integrand or a light of one's own goes wide in the same way if nothing but arithmetic and these functions is in it.
+//! [`ln`], [`exp`], [`floor`] and [`sin_cos_of_turns`] are what drawing needs of a mathematical library,
+//! within 2 units of the last place and without a branch or a call, so that a loop over them is vectorised.
+//! The crate's own loops are compiled for each of a processor's instruction sets and chosen as the program
+//! runs; nothing has to be asked of the compiler. An integrand or a light of one's own goes wide in the same
+//! way if nothing but arithmetic and these functions is in it.
 //!
 //! # The same bits
-//! A sum or a product is rounded alike in every instruction set, and none is fused unless the source says so. So these functions and everything
-//! that is drawn with them have the same bits on every machine with IEEE 754 arithmetic, which `std`'s `ln`, `exp` and `sin` do not promise.
+//! A sum or a product is rounded alike in every instruction set, and none is fused unless the source says so.
+//! So these functions and everything that is drawn with them have the same bits on every machine with IEEE
+//! 754 arithmetic, which `std`'s `ln`, `exp` and `sin` do not promise.
 
 use pulp::{Arch, NullaryFnOnce};
 
@@ -24,7 +28,8 @@ pub use turns::sin_cos_of_turns;
 
 /// Runs a loop, compiled for the widest vectors that this processor has.
 ///
-/// `kernel`'s `call` has to be `#[inline(always)]`, and what it calls inlined into it, or it stays as narrow as the rest of the crate.
+/// `kernel`'s `call` has to be `#[inline(always)]`, and what it calls inlined into it, or it stays as narrow
+/// as the rest of the crate.
 #[inline]
 pub(crate) fn widest<K: NullaryFnOnce>(kernel: K) -> K::Output {
     #[cfg(test)]
@@ -77,7 +82,8 @@ pub(crate) mod tests {
         [wide, narrow]
     }
 
-    /// The same bits with vectors and without, for every estimator that is filled many at a time, and for their sums.
+    /// The same bits with vectors and without, for every estimator that is filled many at a time, and for
+    /// their sums.
     #[test]
     fn wide_and_narrow_loops_have_the_same_bits() {
         let square = Rectangle::WORKSHEET;

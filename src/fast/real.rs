@@ -122,7 +122,8 @@ impl Real for f32 {
         f32::ceil(self)
     }
 
-    /// The series of [`sin_cos_of_turns`](super::sin_cos_of_turns) with four terms each: the first one left out is below 2⁻²⁴.
+    /// The series of [`sin_cos_of_turns`](super::sin_cos_of_turns) with four terms each: the first one left
+    /// out is below 2⁻²⁴.
     #[inline(always)]
     fn sin_cos_of_turns(self) -> (Self, Self) {
         const MAGIC: f32 = 12_582_912.0; // 1.5·2²³
@@ -156,8 +157,10 @@ mod tests {
 
     use crate::stream::Stream;
 
-    /// Against f64's, at every 256th number that there is and at all near the eighths of a turn, where sine and cosine change places. With |t| ≤ π/4: t is rounded
-    /// three times and 2π once, 2⁻²² of t or less in all; the first terms left out are 2.4e-8 or less; a result takes three more roundings of at most 2⁻²⁵ each: below 3.5e-7.
+    /// Against f64's, at every 256th number that there is and at all near the eighths of a turn, where sine
+    /// and cosine change places. With |t| ≤ π/4: t is rounded three times and 2π once, 2⁻²² of t or less in
+    /// all; the first terms left out are 2.4e-8 or less; a result takes three more roundings of at most 2⁻²⁵
+    /// each: below 3.5e-7.
     #[test]
     fn single_sines_of_turns_are_the_double_ones() {
         let near_eighths =

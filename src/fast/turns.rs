@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 /// sin 2πv and cos 2πv for v in \[0, 1\], to 2 ulp and exact at quarter turns.
 ///
-/// The angle is reduced to at most an eighth of a turn without rounding, and the two are computed by Taylor's series.
+/// The angle is reduced to at most an eighth of a turn without rounding, and the two are computed by Taylor's
+/// series.
 ///
 /// ```
 /// use unbiased::fast::sin_cos_of_turns;

@@ -16,8 +16,8 @@ fn drawable(exponential: &Exponential) -> Result<f64> {
     if ok { Ok(rate) } else { Err(Error::Parameter { name: "the rate λ", value: rate, allowed }) }
 }
 
-/// 1.2: F, F⁻¹ and p, each against its own axis, over five mean lengths whatever `u` is. The solution has arrows from
-/// u to the sample that it gives; the student's edition has the curves.
+/// 1.2: F, F⁻¹ and p, each against its own axis, over five mean lengths whatever `u` is. The solution has
+/// arrows from u to the sample that it gives; the student's edition has the curves.
 ///
 /// # Errors
 /// If u is not in \[0, 1\], or the rate is too large or too small to be drawn.
@@ -48,7 +48,8 @@ pub fn exponential(exponential: &Exponential, u: f64, edition: Edition) -> Resul
     let (title, description) = match edition {
         Edition::Student => (
             format!(
-                "Cumulative distribution, its inverse and density of the exponential distribution, λ = {lambda}"
+                "Cumulative distribution, its inverse and density of the exponential distribution, λ = \
+                 {lambda}"
             ),
             format!(
                 "Three panels: F(x) and p(x) against x, and F⁻¹(u) against u, for λ = {lambda}, to be marked."
@@ -57,8 +58,10 @@ pub fn exponential(exponential: &Exponential, u: f64, edition: Edition) -> Resul
         Edition::Solution => (
             format!("Inverting F at u = {given} gives x {} (λ = {lambda})", equals(x, 4)),
             format!(
-                "Three panels for λ = {lambda}: F(x) against x, F⁻¹(u) against u, p(x) against x. Arrows lead from \
-                 u = {given} across to the curve of F and down to x {}, and up to the curve of F⁻¹ and across; p \
+                "Three panels for λ = {lambda}: F(x) against x, F⁻¹(u) against u, p(x) against x. Arrows \
+                 lead from \
+                 u = {given} across to the curve of F and down to x {}, and up to the curve of F⁻¹ and \
+                 across; p \
                  is marked there.{}",
                 equals(x, 4),
                 if x > end { " That x lies beyond the axes." } else { "" }
@@ -178,8 +181,8 @@ impl Sample {
     }
 }
 
-/// 1.1: ten numbers U carried across to F and down to their samples, and the empirical cdf of `draws` samples beside
-/// F, in the band that holds all of F with 95 % confidence.
+/// 1.1: ten numbers U carried across to F and down to their samples, and the empirical cdf of `draws` samples
+/// beside F, in the band that holds all of F with 95 % confidence.
 ///
 /// The band is F̂ ± √(ln(2/0.05)/2n) (Dvoretzky, Kiefer & Wolfowitz 1956; Massart 1990), valid for every n.
 ///
@@ -248,9 +251,12 @@ pub fn empirical_cdf(exponential: &Exponential, draws: usize, seed: u64) -> Resu
         name: "1_1_empirical_cdf",
         title: format!("Exponential samples by inversion: ten step by step, and {draws} against the exact F"),
         description: format!(
-            "Two panels against x, λ = {lambda}. Left: ten evenly spaced U are carried across to the curve of F and down \
-             to their samples, which lie closest where F is steepest, near 0. Right: the share of {draws} samples at most x, \
-             as steps, with a band of ±{} that holds the whole of F with 95 % confidence; F(x) = 1 − e^(−λx) runs \
+            "Two panels against x, λ = {lambda}. Left: ten evenly spaced U are carried across to the curve \
+             of F and down \
+             to their samples, which lie closest where F is steepest, near 0. Right: the share of {draws} \
+             samples at most x, \
+             as steps, with a band of ±{} that holds the whole of F with 95 % confidence; F(x) = 1 − e^(−λx) \
+             runs \
              inside the band (seed {seed}).",
             typeset(reach, 2)
         ),
@@ -302,7 +308,8 @@ pub fn tails(exponential: &Exponential, draws: usize, seed: u64) -> Result<Figur
         name: "1_1_tails",
         title: "The tail of inversion ends where the grid of uniform numbers ends".into(),
         description: format!(
-            "P(X > x) against λx on a logarithmic scale: the straight line e^(−λx), {draws} f64 samples on it (seed {seed}), and the last \
+            "P(X > x) against λx on a logarithmic scale: the straight line e^(−λx), {draws} f64 samples on \
+             it (seed {seed}), and the last \
              samples possible: λx = 16.636 with f32 uniform numbers, 36.737 with f64."
         ),
         edition: Edition::Solution,

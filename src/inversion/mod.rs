@@ -1,7 +1,8 @@
 //! Section 1: a uniform random number, sent through the inverse of a cdf.
 //!
-//! If U is uniform on [0, 1), then F⁻(U) = inf{x : F(x) ≥ U} has the cdf F. For the exponential distribution the inverse
-//! is a formula ([`Exponential`]); for any other one-dimensional cdf it is found by bisection ([`Inversion`]).
+//! If U is uniform on [0, 1), then F⁻(U) = inf{x : F(x) ≥ U} has the cdf F. For the exponential distribution
+//! the inverse is a formula ([`Exponential`]); for any other one-dimensional cdf it is found by bisection
+//! ([`Inversion`]).
 //!
 //! One's own estimator for question 1.1 is checked by `examples/check_mine.rs`.
 
@@ -22,14 +23,15 @@ use crate::stream::Stream;
 
 /// The exponential distribution with rate λ: p(x) = λ e^(−λx) for x ≥ 0.
 ///
-/// Drawn by inversion, X = −ln(1 − U)/λ (worksheet 1.1; *Physically Based Rendering*, 4th ed., section A.4.2). Mean 1/λ,
-/// variance 1/λ². As an [`Estimator`] its draws are X itself, so its estimate is that of the mean.
+/// Drawn by inversion, X = −ln(1 − U)/λ (worksheet 1.1; *Physically Based Rendering*, 4th ed., section
+/// A.4.2). Mean 1/λ, variance 1/λ². As an [`Estimator`] its draws are X itself, so its estimate is that of
+/// the mean.
 ///
 /// # The ends
 /// U = k·2⁻⁵³ is never 1, so X is never infinite and its tail ends at λX = 53 ln 2 = 36.7368; in `f32`, where
-/// U = k·2⁻²⁴, at 24 ln 2 = 16.6355: one draw in 2⁵³ or 2²⁴. On these grids 1 − U is exact, so the plain logarithm loses nothing.
-/// Only where 36.7/λ itself is no number any more, for λ < 2.1e-307 in `f64` and λ < 4.9e-38 in `f32`, can a sample
-/// be infinite, which ends a run with an error.
+/// U = k·2⁻²⁴, at 24 ln 2 = 16.6355: one draw in 2⁵³ or 2²⁴. On these grids 1 − U is exact, so the plain
+/// logarithm loses nothing. Only where 36.7/λ itself is no number any more, for λ < 2.1e-307 in `f64` and λ <
+/// 4.9e-38 in `f32`, can a sample be infinite, which ends a run with an error.
 ///
 /// ```
 /// use unbiased::inversion::Exponential;
@@ -101,7 +103,8 @@ impl Exponential {
         if x < 0.0 {
             return 0.0;
         }
-        // what rounding takes from λx costs half an ulp at most: a correction for it could only make F fall between neighbours
+        // what rounding takes from λx costs half an ulp at most: a correction for it could only make F fall
+        // between neighbours
         (-self.rate * x).exp_m1().abs()
     }
 
@@ -115,7 +118,8 @@ impl Exponential {
         survival - survival * lost
     }
 
-    /// F⁻¹(u) = −ln(1 − u)/λ for any u in \[0, 1\], by `ln_1p`: for u = 1e-20, 1 − u rounds to 1. F⁻¹(1) = +∞.
+    /// F⁻¹(u) = −ln(1 − u)/λ for any u in \[0, 1\], by `ln_1p`: for u = 1e-20, 1 − u rounds to 1. F⁻¹(1) =
+    /// +∞.
     ///
     /// # Errors
     /// If u is not in \[0, 1\].
@@ -125,7 +129,8 @@ impl Exponential {
         Ok((-u).ln_1p().abs() / self.rate)
     }
 
-    /// The x that is exceeded with probability u, −ln(u)/λ for any u in \[0, 1\]: F⁻¹(1 − u), which has no digits left for small u.
+    /// The x that is exceeded with probability u, −ln(u)/λ for any u in \[0, 1\]: F⁻¹(1 − u), which has no
+    /// digits left for small u.
     ///
     /// # Errors
     /// If u is not in \[0, 1\].
@@ -141,7 +146,8 @@ impl Exponential {
         Ok(u.ln().abs() / self.rate)
     }
 
-    /// λx, and what rounding took from it: an exponent near 700 that is off by half an ulp costs 300 ulp of its exponential.
+    /// λx, and what rounding took from it: an exponent near 700 that is off by half an ulp costs 300 ulp of
+    /// its exponential.
     fn times(&self, x: f64) -> (f64, f64) {
         let product = self.rate * x;
         let lost = self.rate.mul_add(x, -product);
@@ -201,16 +207,17 @@ impl Estimator for Exponential {
     }
 }
 
-/// The inverse F⁻(u) = inf{x : F(x) ≥ u} of any one-dimensional cdf, smooth or with jumps and flats, found by bisection.
+/// The inverse F⁻(u) = inf{x : F(x) ≥ u} of any one-dimensional cdf, smooth or with jumps and flats, found by
+/// bisection.
 ///
-/// The bracket is halved in the *order of `f64`'s bits*, not in length: at most 64 evaluations of F lead from any
-/// support, infinite ones too, to two neighbouring numbers, of which the upper is the answer. There is no tolerance
-/// and no starting guess, and a jump or a flat is nothing special. (Worksheet 1.1, "any other one-dimensional distribution"; Devroye,
-/// *Non-Uniform Random Variate Generation*, section II.2.)
+/// The bracket is halved in the *order of `f64`'s bits*, not in length: at most 64 evaluations of F lead from
+/// any support, infinite ones too, to two neighbouring numbers, of which the upper is the answer. There is no
+/// tolerance and no starting guess, and a jump or a flat is nothing special. (Worksheet 1.1, "any other
+/// one-dimensional distribution"; Devroye, *Non-Uniform Random Variate Generation*, section II.2.)
 ///
-/// As a [`Distribution`] it draws F⁻(U), with 2⁻⁵⁴ for U = 0, so that the least and the greatest sample have probability 2⁻⁵³ each
-/// and are finite wherever F⁻ is there. A sample is NaN where F turns out not to be a cdf, which ends a run with an
-/// error; [`inverse_cdf`](Self::inverse_cdf) says what was wrong.
+/// As a [`Distribution`] it draws F⁻(U), with 2⁻⁵⁴ for U = 0, so that the least and the greatest sample have
+/// probability 2⁻⁵³ each and are finite wherever F⁻ is there. A sample is NaN where F turns out not to be a
+/// cdf, which ends a run with an error; [`inverse_cdf`](Self::inverse_cdf) says what was wrong.
 ///
 /// ```
 /// use unbiased::inversion::Inversion;
@@ -229,18 +236,18 @@ pub struct Inversion<F> {
     within: [f64; 2],
 }
 
-/// How far out a cdf is asked to see whether it ends at 0 or 1, if the support reaches further: what a library computes of
-/// larger numbers, λx for one, is often infinite, and some of their cdfs panic there.
+/// How far out a cdf is asked to see whether it ends at 0 or 1, if the support reaches further: what a
+/// library computes of larger numbers, λx for one, is often infinite, and some of their cdfs panic there.
 const FARTHEST: f64 = f64::from_bits((1023 + 960) << 52);
 
 impl<F: Fn(f64) -> f64> Inversion<F> {
-    /// The inverse of `cdf` on the support [low, high], whose ends may be infinite. There F is 0 and 1, and `cdf`
-    /// is not asked. Where it is NaN from some large number on, as ∞·0 is, F counts as 1 there if it has come
-    /// within 2⁻⁴⁰ of that before; and as 0 towards −∞.
+    /// The inverse of `cdf` on the support [low, high], whose ends may be infinite. There F is 0 and 1, and
+    /// `cdf` is not asked. Where it is NaN from some large number on, as ∞·0 is, F counts as 1 there if it
+    /// has come within 2⁻⁴⁰ of that before; and as 0 towards −∞.
     ///
     /// # Errors
-    /// If the support is empty or NaN, or the cdf, looked at in 65 points across the support, leaves [0, 1] or
-    /// falls, by more than 2⁻⁴⁰, is NaN elsewhere, or ends flat so that there is mass at infinity.
+    /// If the support is empty or NaN, or the cdf, looked at in 65 points across the support, leaves [0, 1]
+    /// or falls, by more than 2⁻⁴⁰, is NaN elsewhere, or ends flat so that there is mass at infinity.
     pub fn new(cdf: F, [low, high]: [f64; 2]) -> Result<Self> {
         require("the support's lower end", low, low < f64::INFINITY, "a number below +∞")?;
         require("the support's upper end", high, high > low, "above the lower end")?;
@@ -268,11 +275,12 @@ impl<F: Fn(f64) -> f64> Inversion<F> {
     }
 
     /// F⁻(u) = inf{x : F(x) ≥ u}, the smallest `f64` in the support at which the cdf reaches u; the support's
-    /// lower end at u = 0. Where the cdf ends less than 2⁻⁴⁰ below u, it is where the cdf reaches its last value.
+    /// lower end at u = 0. Where the cdf ends less than 2⁻⁴⁰ below u, it is where the cdf reaches its last
+    /// value.
     ///
     /// # Errors
-    /// If u is not in \[0, 1\], or on the way the cdf is seen to leave \[0, 1\], to fall, or not to reach u, by more
-    /// than 2⁻⁴⁰.
+    /// If u is not in \[0, 1\], or on the way the cdf is seen to leave \[0, 1\], to fall, or not to reach u,
+    /// by more than 2⁻⁴⁰.
     pub fn inverse_cdf(&self, u: f64) -> Result<f64> {
         require_probability(u)?;
         if u == 0.0 {
@@ -317,7 +325,8 @@ impl<F: Fn(f64) -> f64> Inversion<F> {
         if is_probability(f) { Ok(f) } else { Err(outside()) }
     }
 
-    /// Of an infinite end, the last number on the way there from `inside` at which F is not NaN; a finite end itself.
+    /// Of an infinite end, the last number on the way there from `inside` at which F is not NaN; a finite end
+    /// itself.
     fn last_number(&self, inside: f64, end: f64) -> f64 {
         let is_nan = |rank| (self.cdf)(from_order(rank)).is_nan();
         let far = if inside.abs() < FARTHEST { FARTHEST } else { f64::MAX };
@@ -333,8 +342,8 @@ impl<F: Fn(f64) -> f64> Inversion<F> {
     }
 }
 
-/// Where to look for samples towards an infinite end of the support: up to x, the last number there, if all the mass
-/// is on this side of it but for rounding, and else up to the end.
+/// Where to look for samples towards an infinite end of the support: up to x, the last number there, if all
+/// the mass is on this side of it but for rounding, and else up to the end.
 fn infinite_end(end: f64, (x, f): (f64, f64), beyond: f64, rise: f64) -> Result<f64> {
     let not_a_cdf = |reason| Err(Error::NotACdf { reason });
     if beyond <= ROUNDING {
@@ -358,7 +367,8 @@ fn not_falling((x, f_x): (f64, f64), (y, f_y): (f64, f64)) -> Result<()> {
 
 impl<F: Fn(f64) -> f64> Distribution<f64> for Inversion<F> {
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
-        // U = 0 stands for its cell [0, 2⁻⁵³) of the grid: the cell's middle keeps a support without a lower end from giving −∞
+        // U = 0 stands for its cell [0, 2⁻⁵³) of the grid: the cell's middle keeps a support without a lower
+        // end from giving −∞
         const MIDDLE: f64 = 0.5 / (1u64 << 53) as f64;
         let u: f64 = StandardUniform.sample(rng);
         self.inverse_cdf(u.max(MIDDLE)).unwrap_or(f64::NAN)

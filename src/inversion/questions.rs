@@ -34,17 +34,22 @@ pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "1.1",
         title: "Sampling the exponential distribution",
-        statement: "U is uniform on [0, 1). Which function of U is a sample of the exponential distribution with rate λ, whose density is \
-                    p(x) = λ e^(−λx) for x ≥ 0? And how is any other one-dimensional distribution sampled, given its cdf F?",
-        hint: "Integrate the density to get F(x), set F(x) equal to u, and solve for x. What happens at u = 1?",
+        statement: "U is uniform on [0, 1). Which function of U is a sample of the exponential distribution \
+                    with rate λ, whose density is \
+                    p(x) = λ e^(−λx) for x ≥ 0? And how is any other one-dimensional distribution sampled, \
+                    given its cdf F?",
+        hint: "Integrate the density to get F(x), set F(x) equal to u, and solve for x. What happens at u = \
+               1?",
         formula: "x = F⁻¹(u) = −ln(1 − u)/λ;  E[X] = 1/λ, Var X = 1/λ²",
         latex: &[
             r"F(x) = \int_0^x \lambda e^{-\lambda t}\,dt = 1 - e^{-\lambda x}",
             r"x = F^{-1}(u) = -\frac{\ln(1-u)}{\lambda}",
             r"F^-(u) = \inf\{x : F(x) \ge u\}",
         ],
-        answer: "Set F(x) = u and solve for x. A uniform number lands between F(x) and F(x + dx) with probability p(x) dx, which is what \
-                 sampling p means. Where F has no inverse in closed form, or has jumps and flats, F⁻(u) = inf{x : F(x) ≥ u} \
+        answer: "Set F(x) = u and solve for x. A uniform number lands between F(x) and F(x + dx) with \
+                 probability p(x) dx, which is what \
+                 sampling p means. Where F has no inverse in closed form, or has jumps and flats, F⁻(u) = \
+                 inf{x : F(x) ≥ u} \
                  takes its place and is found by bisection. Whether λ divides or multiplies \
                  shows only where λ is not 1.",
         numbers: &[Number {
@@ -68,7 +73,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
         }],
         wrong: &[],
         on_the_original: Some(
-            "The original takes U from [0, 1], where U = 1 would give an infinite sample: U lies in [0, 1). It also writes F⁻¹(x); the \
+            "The original takes U from [0, 1], where U = 1 would give an infinite sample: U lies in [0, 1). \
+             It also writes F⁻¹(x); the \
              argument of an inverse cdf is a probability, u.",
         ),
         example: "q1_1_exponential",
@@ -79,14 +85,16 @@ pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "1.2",
         title: "One sample, read off the graph",
-        statement: "For λ = «λ» the graphs show the CDF, the inverse CDF and the PDF. If U = «u», which value is sampled? Mark the point on the CDF.",
+        statement: "For λ = «λ» the graphs show the CDF, the inverse CDF and the PDF. If U = «u», which \
+                    value is sampled? Mark the point on the CDF.",
         hint: "F is drawn with x along the bottom. On which axis does a probability such as «u» stand?",
         formula: "x = −ln(1 − u)/λ = «−ln(1 − u)/λ», where p(x) = λ(1 − u) = «λ(1 − u)»",
         latex: &[
             r"x = -\frac{\ln(1 - u)}{\lambda} = -\frac{\ln(1 - «u»)}{«λ»} \approx «−ln(1 − u)/λ»",
             r"p(x) = \lambda e^{-\lambda x} = \lambda (1 - u) = «λ(1 − u)»",
         ],
-        answer: "Start at «u» on the vertical axis of the CDF, go across to the curve and down to x. The same point lies on the inverse \
+        answer: "Start at «u» on the vertical axis of the CDF, go across to the curve and down to x. The \
+                 same point lies on the inverse \
                  CDF, above u = «u».",
         numbers: &[Number {
             part: "",
@@ -138,7 +146,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
         hint: "F takes something and gives a probability. What does it take?",
         formula: "x: a value that can be sampled; F(x): the probability of a sample at most x",
         latex: &[r"F(x) = P(X \le x)"],
-        answer: "The values that can be sampled, here all x ≥ 0. The height of the curve is the probability that a sample is at most x.",
+        answer: "The values that can be sampled, here all x ≥ 0. The height of the curve is the probability \
+                 that a sample is at most x.",
         numbers: &[],
         wrong: &[
             Wrong {
@@ -148,7 +157,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
             Wrong { answer: "the random number U", slip: "U lives on the vertical axis of F" },
         ],
         on_the_original: Some(
-            "The same letter x stands for a value in F(x) and for a probability in F⁻¹(x) there; here that is u.",
+            "The same letter x stands for a value in F(x) and for a probability in F⁻¹(x) there; here that \
+             is u.",
         ),
         example: "q1_3_axes",
         module: "inversion",

@@ -39,7 +39,8 @@ pub fn integrand() -> Result<Figure> {
     Plot {
         name: "3_2_integrand",
         title: "cos θ sin θ has area ½; with a factor forgotten the area is 1".into(),
-        description: "Three curves over θ from 0 to π/2: cos θ sin θ, filled, with area ½; cos θ, which is left when sin θ of the solid \
+        description: "Three curves over θ from 0 to π/2: cos θ sin θ, filled, with area ½; cos θ, which is \
+                      left when sin θ of the solid \
                       angle is forgotten, and sin θ, which is left when cos θ is, each with area 1."
             .into(),
         edition: Edition::Solution,
@@ -91,10 +92,13 @@ pub fn directions(hemisphere: Hemisphere, count: usize, seed: u64) -> Result<Fig
         name,
         title: format!("{count} {word} directions, from above and from the side"),
         description: format!(
-            "{count} points on the unit hemisphere drawn with {rule} and φ = 2πV (seed {seed}), seen from above, inside the circle of the horizon, \
+            "{count} points on the unit hemisphere drawn with {rule} and φ = 2πV (seed {seed}), seen from \
+             above, inside the circle of the horizon, \
              and from the side, above the surface. {}",
             match hemisphere {
-                Uniform => "From the side they fill all heights alike; from above they crowd towards the rim.",
+                Uniform =>
+                    "From the side they fill all heights alike; from above they crowd towards the \
+                            rim.",
                 Cosine => "From above they fill the disc evenly; few are near the horizon.",
             }
         ),
@@ -126,8 +130,8 @@ fn reason() -> Panel {
     panel
 }
 
-/// 3.6: f/p against θ for both densities, which is the reason, and the variance of both against the exponent a of
-/// the light cos^a θ, exact and measured.
+/// 3.6: f/p against θ for both densities, which is the reason, and the variance of both against the exponent
+/// a of the light cos^a θ, exact and measured.
 ///
 /// # Errors
 /// If it cannot be drawn.
@@ -179,7 +183,10 @@ pub fn variance_against_exponent(draws: u64, seed: u64) -> Result<Figure> {
         name: "3_6_variance",
         title: "Cosine-weighted directions win for a > −½, uniform ones below".into(),
         description: format!(
-            "Left: f/p against θ under a uniform light; 2 cos θ for uniform directions, 1 everywhere for cosine-weighted ones, whose p is proportional to f. Right: variance of one draw against the exponent a of the light cos^a θ. Uniform: 0 at a = −1, 1/3 at a = 0. Cosine: infinite as a → −1, 0 at a = 0. Both are 2/9 at \
+            "Left: f/p against θ under a uniform light; 2 cos θ for uniform directions, 1 everywhere for \
+             cosine-weighted ones, whose p is proportional to f. Right: variance of one draw against the \
+             exponent a of the light cos^a θ. Uniform: 0 at a = −1, 1/3 at a = 0. Cosine: infinite as a → \
+             −1, 0 at a = 0. Both are 2/9 at \
              a = −½. Points: variances of {draws} draws, seed {seed}."
         ),
         edition: Edition::Solution,
@@ -229,7 +236,8 @@ pub fn variance_against_ring(draws: u64, seed: u64) -> Result<Figure> {
         name: "3_6_ring",
         title: "Light from near the horizon: cosine-weighted directions lose for ε < ¾".into(),
         description: format!(
-            "The ratio of cosine's variance to the uniform one against the width ε of the ring of light cos θ < ε, falling from 8.03 at ε = 0.1 to 1 at \
+            "The ratio of cosine's variance to the uniform one against the width ε of the ring of light cos \
+             θ < ε, falling from 8.03 at ε = 0.1 to 1 at \
              ε = ¾ and below. Points: variances of {draws} draws, seed {seed}."
         ),
         edition: Edition::Solution,
@@ -244,8 +252,9 @@ pub fn variance_against_ring(draws: u64, seed: u64) -> Result<Figure> {
 /// The relative difference taken for none: half of the smaller bias shown.
 const DELTA: f64 = 5e-3;
 
-/// The wealth of those who bet against an estimator's mean, while it is drawn from: a right estimator of the light reflected under L = cos θ,
-/// one that is 1 % off, and the classic mistake, uniform directions with the cosine weight. Beside it the bets that certify the right one.
+/// The wealth of those who bet against an estimator's mean, while it is drawn from: a right estimator of the
+/// light reflected under L = cos θ, one that is 1 % off, and the classic mistake, uniform directions with the
+/// cosine weight. Beside it the bets that certify the right one.
 ///
 /// # Errors
 /// If it cannot be drawn.
@@ -311,13 +320,17 @@ pub fn betting(seed: u64) -> Result<Figure> {
     Plot {
         name: "check_wealth",
         title: format!(
-            "Betting against a mean: the classic mistake is refuted after {classic_draws} draws, a bias of 1 % after {off_draws}, and the right \
+            "Betting against a mean: the classic mistake is refuted after {classic_draws} draws, a bias of 1 \
+             % after {off_draws}, and the right \
              estimator certified within 0.5 % after {right_draws}"
         ),
         description: format!(
-            "Two panels, wealth against draws, both logarithmic, seed {seed}. Left, bets against the mean 2/3: those on uniform directions \
-             with the cosine weight reach 10¹² after {classic_draws} draws, those on an estimator 1 % too large after {off_draws}, those on \
-             a right one never. Right, for the right estimator: bets against means 0.5 % less and 0.5 % more both pass \
+            "Two panels, wealth against draws, both logarithmic, seed {seed}. Left, bets against the mean \
+             2/3: those on uniform directions \
+             with the cosine weight reach 10¹² after {classic_draws} draws, those on an estimator 1 % too \
+             large after {off_draws}, those on \
+             a right one never. Right, for the right estimator: bets against means 0.5 % less and 0.5 % more \
+             both pass \
              10⁶ by {right_draws} draws."
         ),
         edition: Edition::Solution,

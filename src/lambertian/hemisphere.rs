@@ -109,14 +109,14 @@ impl From<Direction> for DVec3 {
 /// | `Uniform` | 1/(2π) | 1 − U | √(U(2 − U)) | c | 3.4 |
 /// | `Cosine` | cos θ/π | √(1 − U) | √U | c² | 3.5 |
 ///
-/// Uniform: the area of a sphere between two heights is in proportion to their distance (Archimedes), so cos θ
-/// is uniform. Cosine: a uniform point of the unit disc, at radius √U, lifted onto the sphere (Malley;
+/// Uniform: the area of a sphere between two heights is in proportion to their distance (Archimedes), so cos
+/// θ is uniform. Cosine: a uniform point of the unit disc, at radius √U, lifted onto the sphere (Malley;
 /// *Physically Based Rendering*, 4th ed., section A.5).
 ///
 /// # The ends
-/// U = k·2⁻⁵³ is never 1, so cos θ is never 0 and cosine's f/p never 0/0: the smallest cos θ is 2⁻⁵³ = 1.1e-16
-/// for `Uniform` and 2⁻²⁶·⁵ = 1.05e-8 for `Cosine`, each with probability 2⁻⁵³. sin θ is computed from U and
-/// not as √(1 − cos² θ), which rounds to 0 for U < 2⁻⁵³ and loses half the digits long before.
+/// U = k·2⁻⁵³ is never 1, so cos θ is never 0 and cosine's f/p never 0/0: the smallest cos θ is 2⁻⁵³ =
+/// 1.1e-16 for `Uniform` and 2⁻²⁶·⁵ = 1.05e-8 for `Cosine`, each with probability 2⁻⁵³. sin θ is computed
+/// from U and not as √(1 − cos² θ), which rounds to 0 for U < 2⁻⁵³ and loses half the digits long before.
 ///
 /// ```
 /// use rand::distr::Distribution;

@@ -20,7 +20,8 @@ use crate::estimator::{Density, Estimator, f_over_p, from_uniforms};
 use crate::float::Extended;
 use crate::lambertian::hemisphere::{Direction, Hemisphere};
 
-/// A diffuse surface: it reflects the part ρ of the light that falls on it, the same radiance in all directions.
+/// A diffuse surface: it reflects the part ρ of the light that falls on it, the same radiance in all
+/// directions.
 ///
 /// Its BRDF is f_r = ρ/π (worksheet 3; *Physically Based Rendering*, 4th ed., section 9.2), so the reflected
 /// radiance depends on the albedo ρ linearly and on the direction of view not at all (3.3). It emits nothing
@@ -51,7 +52,8 @@ impl Lambertian {
     ///
     /// ```
     /// let error = unbiased::lambertian::Lambertian::new(1.2).unwrap_err();
-    /// assert_eq!(error.to_string(), "the albedo ρ must be between 0 and 1 (above 1 it would create energy), not 1.2");
+    /// let sentence = "the albedo ρ must be between 0 and 1 (above 1 it would create energy), not 1.2";
+    /// assert_eq!(error.to_string(), sentence);
     /// ```
     pub fn new(albedo: f64) -> Result<Self> {
         let ok = (0.0..=1.0).contains(&albedo);
@@ -105,15 +107,16 @@ impl Lambertian {
         })
     }
 
-    /// The estimator ρ L_i of L_r, directions drawn in proportion to cos θ (worksheet 3.5). The directions must
-    /// be *drawn* so: with uniform ones this formula is right under a light that does not depend on θ, such as a
-    /// constant one, and wrong under others.
+    /// The estimator ρ L_i of L_r, directions drawn in proportion to cos θ (worksheet 3.5). The directions
+    /// must be *drawn* so: with uniform ones this formula is right under a light that does not depend on θ,
+    /// such as a constant one, and wrong under others.
     pub fn cosine_estimator<L: Fn(&Direction) -> f64 + Sync>(self, light: L) -> impl Estimator {
         from_uniforms(move |u| self.albedo * light(&Hemisphere::Cosine.warp(u)))
     }
 }
 
-/// A light whose reflection is known in closed form, and the variance of each way to estimate it (worksheet 3.6).
+/// A light whose reflection is known in closed form, and the variance of each way to estimate it (worksheet
+/// 3.6).
 ///
 /// ```
 /// use unbiased::lambertian::hemisphere::Hemisphere::{Cosine, Uniform};
@@ -148,8 +151,8 @@ pub trait Light: Sync {
 /// | variance, cosine | ρ² a²/((a+1)(a+2)²) | a > −1 |
 ///
 /// So neither density always wins: cosine has no variance at a = 0, uniform none at a = −1 (where cosine's is
-/// infinite), and at a = −1/2 they are equal. The forms 4ρ²\[1/(2a+3) − 1/(a+2)²\] and ρ²\[1/(a+1) − 4/(a+2)²\]
-/// are the same, but cancel.
+/// infinite), and at a = −1/2 they are equal. The forms 4ρ²\[1/(2a+3) − 1/(a+2)²\] and ρ²\[1/(a+1) −
+/// 4/(a+2)²\] are the same, but cancel.
 ///
 /// # The ends
 /// No direction is drawn below the smallest cos θ of [`Hemisphere`], where 2^(−53(a+2)) of the light is for
@@ -210,8 +213,8 @@ impl Light for CosinePower {
 /// L_r = ρε²; the variance is ρ²(4ε³/3 − ε⁴) with uniform directions and ρ²ε²(1 − ε²) with cosine ones.
 /// Cosine's is the larger for ε < 3/4: 297/37 = 8.03 times at ε = 0.1.
 ///
-/// The edge cos θ = ε is lit, so that ε = 1 is a constant light, the normal included. Cosine directions, whose
-/// cos θ is 1.05e-8 or more, never see a narrower ring.
+/// The edge cos θ = ε is lit, so that ε = 1 is a constant light, the normal included. Cosine directions,
+/// whose cos θ is 1.05e-8 or more, never see a narrower ring.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RingLight {
     width: f64,

@@ -44,15 +44,19 @@ pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "3.1",
         title: "What the cube emits",
-        statement: "A wooden cube scatters light diffusely: its BRDF is f_r = ρ/π. Outgoing radiance is emitted plus reflected radiance, \
-                    L_o = L_e + L_r with L_r = ∫ f_r L_i cos θ dω over the hemisphere. What is the cube's emitted radiance L_e?",
+        statement: "A wooden cube scatters light diffusely: its BRDF is f_r = ρ/π. Outgoing radiance is \
+                    emitted plus reflected radiance, \
+                    L_o = L_e + L_r with L_r = ∫ f_r L_i cos θ dω over the hemisphere. What is the cube's \
+                    emitted radiance L_e?",
         hint: "Who makes the light that leaves a piece of wood?",
         formula: "L_e = 0",
         latex: &[
-            r"L_o(\mathbf p, \omega_o) = L_e(\mathbf p, \omega_o) + \int_{H^2} f_r\, L_i(\mathbf p, \omega)\cos\theta\,d\omega",
+            r"L_o(\mathbf p, \omega_o)
+              = L_e(\mathbf p, \omega_o) + \int_{H^2} f_r\, L_i(\mathbf p, \omega)\cos\theta\,d\omega",
             r"L_e = 0",
         ],
-        answer: "Wood is no lamp: all light that leaves the cube came from elsewhere, so its outgoing radiance is the reflected one.",
+        answer: "Wood is no lamp: all light that leaves the cube came from elsewhere, so its outgoing \
+                 radiance is the reflected one.",
         numbers: &[Number {
             part: "",
             symbol: "L_e",
@@ -66,7 +70,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
         }],
         wrong: &[],
         on_the_original: Some(
-            "The original calls the sum with L_e in it reflected radiance. Outgoing radiance is the sum, L_o = L_e + L_r; reflected radiance is the integral.",
+            "The original calls the sum with L_e in it reflected radiance. Outgoing radiance is the sum, L_o \
+             = L_e + L_r; reflected radiance is the integral.",
         ),
         example: "q3_1_emission",
         module: "lambertian",
@@ -76,14 +81,15 @@ pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "3.2",
         title: "Under a uniform sky",
-        statement: "The incoming radiance L_i is the same from every direction of the hemisphere above p, on the cube's top face. What is the reflected \
+        statement: "The incoming radiance L_i is the same from every direction of the hemisphere above p, on \
+                    the cube's top face. What is the reflected \
                     radiance L_r? (Write dω in terms of θ and φ.)",
         hint: "dω = sin θ dθ dφ. Substitute u = sin θ.",
         formula: "L_r = ρ L_i = «ρ L_i»",
-        latex: &[
-            r"L_r = \frac{\rho}{\pi} L_i \int_0^{2\pi}\!\! d\varphi \int_0^{\pi/2} \cos\theta \sin\theta\, d\theta = \frac{\rho}{\pi} L_i \cdot 2\pi \cdot \frac12 = \rho L_i = «ρ L_i»",
-        ],
-        answer: "A solid angle is dω = sin θ dθ dφ, so the integrand is cos θ sin θ, whose integral over θ is ½. The π of the BRDF is there to cancel the π \
+        latex: &[r"L_r = \frac{\rho}{\pi} L_i \int_0^{2\pi}\!\! d\varphi \int_0^{\pi/2} \cos\theta
+              \sin\theta\, d\theta = \frac{\rho}{\pi} L_i \cdot 2\pi \cdot \frac12 = \rho L_i = «ρ L_i»"],
+        answer: "A solid angle is dω = sin θ dθ dφ, so the integrand is cos θ sin θ, whose integral over θ \
+                 is ½. The π of the BRDF is there to cancel the π \
                  that is left: a white surface (ρ = 1) under a uniform sky is as bright as the sky.",
         numbers: &[Number {
             part: "",
@@ -124,17 +130,20 @@ pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "3.3",
         title: "What reflected radiance depends on",
-        statement: "How does the reflected radiance depend on the direction ω_o towards the eye? How does it depend on ρ?",
+        statement: "How does the reflected radiance depend on the direction ω_o towards the eye? How does it \
+                    depend on ρ?",
         hint: "Look for ω_o in the BRDF ρ/π, and for ρ in the answer to 3.2.",
         formula: "L_r does not depend on ω_o, and is proportional to ρ in [0, 1]",
         latex: &[r"\frac{\partial L_r}{\partial \omega_o} = 0, \qquad L_r \propto \rho"],
-        answer: "The BRDF ρ/π knows no ω_o: that is what makes the surface Lambertian, equally bright from every side. ρ, the albedo, is the share of the \
+        answer: "The BRDF ρ/π knows no ω_o: that is what makes the surface Lambertian, equally bright from \
+                 every side. ρ, the albedo, is the share of the \
                  incoming power that is reflected; above 1 the surface would create energy.",
         numbers: &[],
         wrong: &[
             Wrong {
                 answer: "L_r ∝ cos θ_o",
-                slip: "the power sent into a direction falls with cos θ_o, but so does the area seen from there: radiance stays",
+                slip: "the power sent into a direction falls with cos θ_o, but so does the area seen from \
+                       there: radiance stays",
             },
             Wrong {
                 answer: "L_r = ρ/π",
@@ -150,15 +159,19 @@ pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "3.4",
         title: "Directions in proportion to the BRDF",
-        statement: "The light is no longer uniform. To estimate L_r, n directions are drawn over the hemisphere from a density p(ω) proportional to the BRDF. \
+        statement: "The light is no longer uniform. To estimate L_r, n directions are drawn over the \
+                    hemisphere from a density p(ω) proportional to the BRDF. \
                     Write down the Monte Carlo estimator.",
-        hint: "A density in proportion to a constant is a constant, and it integrates to 1 over the hemisphere's 2π steradians.",
+        hint: "A density in proportion to a constant is a constant, and it integrates to 1 over the \
+               hemisphere's 2π steradians.",
         formula: "L̂_r = 1/n Σ (ρ/π) L_i cos θ / (1/2π) = 2ρ/n Σ L_i(ω_j) cos θ_j",
-        latex: &[
-            r"\hat L_r = \frac1n \sum_{j=1}^n \frac{\frac{\rho}{\pi} L_i(\omega_j)\cos\theta_j}{\frac{1}{2\pi}} = \frac{2\rho}{n}\sum_{j=1}^n L_i(\omega_j)\cos\theta_j",
-        ],
-        answer: "The BRDF ρ/π is constant, so a density proportional to it is constant too, and integrates to 1 over the hemisphere's 2π steradians: p = 1/(2π). \
-                 Each draw is the integrand over the density. The light here is L cos^a θ with a = «a», whose reflection is 2ρL/(a + 2) = «2ρ L/(a + 2)».",
+        latex: &[r"\hat L_r
+              = \frac1n \sum_{j=1}^n \frac{\frac{\rho}{\pi} L_i(\omega_j)\cos\theta_j}{\frac{1}{2\pi}}
+              = \frac{2\rho}{n}\sum_{j=1}^n L_i(\omega_j)\cos\theta_j"],
+        answer: "The BRDF ρ/π is constant, so a density proportional to it is constant too, and integrates \
+                 to 1 over the hemisphere's 2π steradians: p = 1/(2π). \
+                 Each draw is the integrand over the density. The light here is L cos^a θ with a = «a», \
+                 whose reflection is 2ρL/(a + 2) = «2ρ L/(a + 2)».",
         numbers: &[Number {
             part: "",
             symbol: "c",
@@ -183,7 +196,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
         wrong: &[
             Wrong {
                 answer: "ρ/n Σ L_i",
-                slip: "the density cos θ/π in the formula while directions are uniform: right under a constant light, 3/4 of the truth under cos θ",
+                slip: "the density cos θ/π in the formula while directions are uniform: right under a \
+                       constant light, 3/4 of the truth under cos θ",
             },
             Wrong {
                 answer: "2ρ/n Σ L_i",
@@ -205,13 +219,16 @@ pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "3.5",
         title: "Cosine-weighted directions",
-        statement: "In practice directions are drawn with density p(ω) = cos θ/π. What is the estimator for n directions now?",
+        statement: "In practice directions are drawn with density p(ω) = cos θ/π. What is the estimator for \
+                    n directions now?",
         hint: "Put the new density under the same integrand, and cancel on paper what cancels.",
         formula: "L̂_r = ρ/n Σ L_i(ω_j)",
-        latex: &[
-            r"\hat L_r = \frac1n \sum_{j=1}^n \frac{\frac{\rho}{\pi} L_i(\omega_j)\cos\theta_j}{\frac{\cos\theta_j}{\pi}} = \frac{\rho}{n}\sum_{j=1}^n L_i(\omega_j)",
-        ],
-        answer: "The cosine and the π cancel, on paper: at cos θ → 0 the quotient of the two would be 0/0. The directions must be drawn from the new density, \
+        latex: &[r"\hat L_r
+              = \frac1n \sum_{j=1}^n \frac{\frac{\rho}{\pi}
+              L_i(\omega_j)\cos\theta_j}{\frac{\cos\theta_j}{\pi}}
+              = \frac{\rho}{n}\sum_{j=1}^n L_i(\omega_j)"],
+        answer: "The cosine and the π cancel, on paper: at cos θ → 0 the quotient of the two would be 0/0. \
+                 The directions must be drawn from the new density, \
                  cos θ = √(1 − U); changing the formula alone is the classic mistake.",
         numbers: &[Number {
             part: "",
@@ -231,7 +248,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
         wrong: &[
             Wrong {
                 answer: "ρ/n Σ L_i with uniform directions",
-                slip: "only the formula was changed: a constant light cannot show it, cos θ gives 3/4 of the truth",
+                slip: "only the formula was changed: a constant light cannot show it, cos θ gives 3/4 of the \
+                       truth",
             },
             Wrong {
                 answer: "2ρ/n Σ L_i cos θ with cosine directions",
@@ -251,16 +269,22 @@ pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "3.6",
         title: "Which directions are better",
-        statement: "Why, conceptually, does cosine-weighted sampling of the hemisphere do better than uniform sampling?",
-        hint: "What is the variance of f/p if p is exactly proportional to f? And where would the light have to come from for cos θ/π to be a poor choice?",
+        statement: "Why, conceptually, does cosine-weighted sampling of the hemisphere do better than \
+                    uniform sampling?",
+        hint: "What is the variance of f/p if p is exactly proportional to f? And where would the light have \
+               to come from for cos θ/π to be a poor choice?",
         formula: "under cos^a θ: Var uniform = 4ρ²(a+1)²/((2a+3)(a+2)²), Var cosine = ρ²a²/((a+1)(a+2)²)",
         latex: &[
             r"\operatorname{Var}\frac{f(X)}{p(X)} = \int \frac{f^2}{p} - \left(\int f\right)^2",
-            r"V_\text{uniform} = \frac{4\rho^2(a+1)^2}{(2a+3)(a+2)^2}, \qquad V_\text{cosine} = \frac{\rho^2a^2}{(a+1)(a+2)^2}",
+            r"V_\text{uniform} = \frac{4\rho^2(a+1)^2}{(2a+3)(a+2)^2}, \qquad V_\text{cosine}
+              = \frac{\rho^2a^2}{(a+1)(a+2)^2}",
         ],
-        answer: "The rate 1/√n is the same; the constant is smaller when the density is close to the integrand's shape, and the integrand has a factor cos θ. The \
-                 variance is 0 exactly when p is proportional to an integrand of one sign: cosine under a uniform sky. But cosine does not always win: under the light cos^a θ both are equal \
-                 at a = −½, and as a → −1 uniform directions have no variance and cosine ones an infinite one. With light only along the horizon, cos θ < ε, cosine's variance is \
+        answer: "The rate 1/√n is the same; the constant is smaller when the density is close to the \
+                 integrand's shape, and the integrand has a factor cos θ. The \
+                 variance is 0 exactly when p is proportional to an integrand of one sign: cosine under a \
+                 uniform sky. But cosine does not always win: under the light cos^a θ both are equal \
+                 at a = −½, and as a → −1 uniform directions have no variance and cosine ones an infinite \
+                 one. With light only along the horizon, cos θ < ε, cosine's variance is \
                  the larger for ε < ¾, and «(1 − ε²)/(4ε/3 − ε²)» times uniform's at ε = «ε».",
         numbers: &[],
         wrong: &[
@@ -275,7 +299,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
             },
         ],
         on_the_original: Some(
-            "The original says that cosine-weighted sampling outperforms uniform sampling; it does for lights that do not favour the horizon.",
+            "The original says that cosine-weighted sampling outperforms uniform sampling; it does for \
+             lights that do not favour the horizon.",
         ),
         example: "q3_6_variance",
         module: "lambertian",

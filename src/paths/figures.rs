@@ -73,7 +73,9 @@ pub fn two_bounces_converging(room: &BoxRoom, seed: u64) -> Result<Figure> {
         name: "4_3_convergence",
         title: "Three estimators of the light after two bounces, and the value they converge to".into(),
         description: format!(
-            "Running means against the number of paths n from 10 to {LAST}, logarithmic (seed {seed}). With the exact Lₒ(pⱼ) and cosine directions the mean settles first; with the light sampled at pⱼ and uniform directions, in its \
+            "Running means against the number of paths n from 10 to {LAST}, logarithmic (seed {seed}). With \
+             the exact Lₒ(pⱼ) and cosine directions the mean settles first; with the light sampled at pⱼ and \
+             uniform directions, in its \
              95 % band, next; where the light is found by chance most paths find nothing, and the mean jumps."
         ),
         edition: Edition::Solution,
@@ -99,7 +101,8 @@ fn running_means(estimator: &dyn Estimator, last: u64, seed: u64) -> Vec<[f64; 2
     points
 }
 
-/// 4.3: what becomes of an estimate when occluded directions are left out of n: the light stands where cos θ > 0.8, and something dark fills the directions below cos θ = c.
+/// 4.3: what becomes of an estimate when occluded directions are left out of n: the light stands where cos θ
+/// > 0.8, and something dark fills the directions below cos θ = c.
 ///
 /// ```
 /// let figure = unbiased::paths::figures::occluded_fraction(10_000, 1)?;
@@ -145,7 +148,9 @@ pub fn occluded_fraction(draws: u64, seed: u64) -> Result<Figure> {
         name: "4_3_occlusion",
         title: "An occluded direction counts: it adds 0 to the sum and 1 to n".into(),
         description: format!(
-            "L̂/ρ with uniform directions against the fraction c that is occluded, from 0 to 0.8; the light itself stays. The sum divided by all n is flat at {truth:.2}; divided by the number of visible directions it rises as {truth:.2}/(1 − c), to five times that. \
+            "L̂/ρ with uniform directions against the fraction c that is occluded, from 0 to 0.8; the light \
+             itself stays. The sum divided by all n is flat at {truth:.2}; divided by the number of visible \
+             directions it rises as {truth:.2}/(1 − c), to five times that. \
              Points: {draws} directions each (seed {seed})."
         ),
         edition: Edition::Solution,
@@ -157,7 +162,8 @@ pub fn occluded_fraction(draws: u64, seed: u64) -> Result<Figure> {
     .draw()
 }
 
-/// A way to find the light whose variance is finite: by chance where the light touches the walls, and its samples near them weigh without bound.
+/// A way to find the light whose variance is finite: by chance where the light touches the walls, and its
+/// samples near them weigh without bound.
 fn find_light(room: &BoxRoom) -> Result<FindLight> {
     let sampled = Paths::new(*room, Bounces::UpTo(2), Cosine, FindLight::BySampling)?;
     Ok(if sampled.caution().is_none() { FindLight::BySampling } else { FindLight::ByChance })
@@ -229,9 +235,17 @@ pub fn radiance_by_bounces(room: &BoxRoom, seed: u64) -> Result<Figure> {
     let less = all.iter().zip(all.iter().skip(1)).all(|([.., low, _], [.., next])| next < low);
     Plot {
         name: "4_3_bounces",
-        title: if less { "Each bounce adds less" } else { "The light after one bounce, after two, and so on" }.into(),
+        title: if less {
+            "Each bounce adds less"
+        } else {
+            "The light after one bounce, after two, and so \
+                                                           on"
+        }
+        .into(),
         description: format!(
-            "Bars, on a logarithmic scale: the light that leaves p after k = 1 to 8 bounces. For k = {known} it is exact; the others are means of {PATHS} paths each with 95 % intervals, most too short to be seen (seed {seed})."
+            "Bars, on a logarithmic scale: the light that leaves p after k = 1 to 8 bounces. For k = {known} \
+             it is exact; the others are means of {PATHS} paths each with 95 % intervals, most too short to \
+             be seen (seed {seed})."
         ),
         edition: Edition::Solution,
         width: Width::Column,
@@ -307,7 +321,8 @@ impl Series {
     }
 }
 
-/// The light of `paths`, with its standard error: of two million paths if they are short, of fewer if they are long, but a hundred thousand at least.
+/// The light of `paths`, with its standard error: of two million paths if they are short, of fewer if they
+/// are long, but a hundred thousand at least.
 fn reference(paths: &Paths, seed: u64) -> Result<[f64; 2]> {
     const FEWEST: u64 = 100_000;
     // a seed of its own, so that no error is shared with what is measured against it
@@ -318,10 +333,12 @@ fn reference(paths: &Paths, seed: u64) -> Result<[f64; 2]> {
     Ok([found.mean(), found.std_error().unwrap_or(0.0)])
 }
 
-/// 4.3: RMSE relative to the truth, for the four ways of sampling and for roulette against truncation: once against rays, which are the same on every machine, and once against this machine's seconds.
-/// None where p gets no light.
+/// 4.3: RMSE relative to the truth, for the four ways of sampling and for roulette against truncation: once
+/// against rays, which are the same on every machine, and once against this machine's seconds. None where p
+/// gets no light.
 ///
-/// Ways whose variance may be infinite, [`Paths::caution`], are left out; and so is all light where an albedo is too large for absorption to end a path.
+/// Ways whose variance may be infinite, [`Paths::caution`], are left out; and so is all light where an albedo
+/// is too large for absorption to end a path.
 ///
 /// ```no_run
 /// use unbiased::paths::room::{BoxRoom, Scene};
@@ -432,7 +449,8 @@ fn error_figure(
                 level.push((ink, label, series.bias.abs()));
             }
         }
-        // of two lines close to each other the upper one has its label on the right, where the lines fall away from it
+        // of two lines close to each other the upper one has its label on the right, where the lines fall
+        // away from it
         falling.sort_by(|a, b| b.2.total_cmp(&a.2));
         for (rank, (ink, label, once)) in falling.into_iter().enumerate() {
             let past_the_points = low * (high / low).powf(if rank < 2 { 0.55 } else { 0.6 });
@@ -452,14 +470,17 @@ fn error_figure(
     let all_light = if endings.is_empty() {
         "All light is left out: an albedo is too large for absorption to end a path."
     } else {
-        "All light: paths of at most two or four bounces level off at what they leave out, paths ended by roulette fall on."
+        "All light: paths of at most two or four bounces level off at what they leave out, paths ended by \
+         roulette fall on."
     };
     let left_out = ways.len() < 4 || (1..4).contains(&endings.len());
     Plot {
         name,
         title: format!("What the ways of sampling cost: error against {unit}"),
         description: format!(
-            "Root mean square error relative to the truth against {unit}, both logarithmic. Light after at most two bounces, by four ways of sampling: the lower a line, the fewer {unit} an error takes. {all_light} \
+            "Root mean square error relative to the truth against {unit}, both logarithmic. Light after at \
+             most two bounces, by four ways of sampling: the lower a line, the fewer {unit} an error takes. \
+             {all_light} \
              Lines: from a path's variance, bias and cost; points: 100 runs each (seed {seed}).{}",
             if left_out { " Ways whose variance may be infinite are left out." } else { "" }
         ),

@@ -148,11 +148,16 @@ const ABOUT: About = About {
     id: "paths",
     name: "paths in the box room",
     questions: &[("4.3", 0)],
-    draw: "A draw is one of an estimate of the radiance that leaves p after `first` to `last` bounces, all summed; a\n\
-           bounce is a vertex between light and eye, p among them. The room is [−2, 2] × [−2, 2] × [0, 4] metres, z\n\
-           up; its walls, floor and ceiling reflect wall_albedo. The cube [−1/2, 1/2] × [−1/2, 1/2] × [0, 1] stands\n\
-           on the floor and reflects cube_albedo. All is diffuse. The light is the square |x|, |y| ≤ light_half_width\n\
-           of the ceiling, faces down, emits radiance and reflects nothing; every other face emits emission.\n\
+    draw: "A draw is one of an estimate of the radiance that leaves p after `first` to `last` bounces, all \
+           summed; a\n\
+           bounce is a vertex between light and eye, p among them. The room is [−2, 2] × [−2, 2] × [0, 4] \
+           metres, z\n\
+           up; its walls, floor and ceiling reflect wall_albedo. The cube [−1/2, 1/2] × [−1/2, 1/2] × [0, 1] \
+           stands\n\
+           on the floor and reflects cube_albedo. All is diffuse. The light is the square |x|, |y| ≤ \
+           light_half_width\n\
+           of the ceiling, faces down, emits radiance and reflects nothing; every other face emits \
+           emission.\n\
            p = (x, y, z) lies on a face; bounce 0 is what p itself emits.",
 };
 
@@ -235,7 +240,8 @@ fn mistakes() -> Vec<Mistake> {
         way("no-pi-light", "1/π of the BRDF forgotten at the light sample", "ρ L cos θ cos θ′ A/r²",
             "f_r = ρ/π", Way { last: |albedo, _| PI * albedo, ..RIGHT }),
         way("no-pi", "1/π of the BRDF forgotten at every bounce", "f_r = ρ", "f_r = ρ/π",
-            Way { last: |albedo, _| PI * albedo, carried: |throughput, albedo, _| throughput * albedo * PI, ..RIGHT }),
+            Way { last: |albedo, _| PI * albedo, carried: |throughput, albedo, _| throughput * albedo * PI,
+                ..RIGHT }),
         way("no-last-albedo", "the last vertex's albedo forgotten", "L cos θ cos θ′ A/(π r²)",
             "the vertex that the light falls on reflects ρ of it, too", Way { last: |_, _| 1.0, ..RIGHT }),
         way("one-albedo", "p's albedo at every vertex", "ρ(p)ᵏ",

@@ -6,23 +6,30 @@
 //! > L_o(p, ω_o) = L_e(p) + ∫ f_r L_i(p, ω) cos θ dω.
 //!
 //! - **3.4** draws ω_i and averages f_r L_i cos θ_i/p(ω_i), where L_i is a light that is known.
-//! - **4.3** In a room, what comes from ω_i left another point: L_i(p, ω_i) = L_o(p_j, −ω_i), p_j being the first point that a ray from p meets. So
+//! - **4.3** In a room, what comes from ω_i left another point: L_i(p, ω_i) = L_o(p_j, −ω_i), p_j being the
+//!   first point that a ray from p meets. So
 //!
 //!   > L̂_o(p, ω_o) = 1/n Σ f_r L_o(p_j, −ω_ij) cos θ_ij/p(ω_ij).
 //!
-//!   If L_o(p_j) is the light reflected *once* at p_j, this is the part of two bounces. What matters is its mean: an unbiased estimate L̂_o(p_j) in its place, drawn
-//!   afresh for each ω_ij, leaves the whole unbiased. [`reflected`] is this estimator, with any L̂_o plugged in.
-//! - **5** If L̂_o(p_j) is this very estimator, the path goes on from p_j to p_j′ and for ever; written out, without recursion, it is a loop along one path with the
-//!   product of its throughputs f_r cos θ/p. Roulette ends it: it goes on with probability q, its throughput divided by q, so the mean stays. [`Paths`] is that loop.
+//!   If L_o(p_j) is the light reflected *once* at p_j, this is the part of two bounces. What matters is its
+//!   mean: an unbiased estimate L̂_o(p_j) in its place, drawn afresh for each ω_ij, leaves the whole
+//!   unbiased. [`reflected`] is this estimator, with any L̂_o plugged in.
+//! - **5** If L̂_o(p_j) is this very estimator, the path goes on from p_j to p_j′ and for ever; written out,
+//!   without recursion, it is a loop along one path with the product of its throughputs f_r cos θ/p. Roulette
+//!   ends it: it goes on with probability q, its throughput divided by q, so the mean stays. [`Paths`] is
+//!   that loop.
 //!
 //! # What a bounce is
-//! A bounce is a vertex of the path between the light and the eye. L_o(p) = Σ L_k, with L_k the light after k bounces: k = 0 is what p itself emits, k = 1
-//! what comes from the light to p at once, k = 2 what comes by way of one other point p_j.
+//! A bounce is a vertex of the path between the light and the eye. L_o(p) = Σ L_k, with L_k the light after k
+//! bounces: k = 0 is what p itself emits, k = 1 what comes from the light to p at once, k = 2 what comes by
+//! way of one other point p_j.
 //!
 //! # How the light is found
-//! By chance, when a path happens on it, or by a sample of its area at every vertex (*next-event estimation*, Coveyou et al. 1967): with y uniform on the light of area A, and V = 1 where
-//! the cube leaves the view free, f_r L_e V cos θ cos θ_y A/r² in place of a ray. Both are unbiased. What is found in one way must not be found in the other, too: where the light is sampled, a path that
-//! happens on it adds nothing, and what the faces emit is found by chance always.
+//! By chance, when a path happens on it, or by a sample of its area at every vertex (*next-event estimation*,
+//! Coveyou et al. 1967): with y uniform on the light of area A, and V = 1 where the cube leaves the view
+//! free, f_r L_e V cos θ cos θ_y A/r² in place of a ray. Both are unbiased. What is found in one way must not
+//! be found in the other, too: where the light is sampled, a path that happens on it adds nothing, and what
+//! the faces emit is found by chance always.
 
 use glam::DVec3;
 use rand::distr::Distribution;
@@ -68,7 +75,8 @@ pub enum Bounces {
     UpTo(u32),
     /// All light. A path goes on with this probability q after every vertex.
     All(f64),
-    /// All light. A path goes on with probability min(1, w), w being its throughput: it becomes 1 if the path goes on.
+    /// All light. A path goes on with probability min(1, w), w being its throughput: it becomes 1 if the path
+    /// goes on.
     AllByThroughput,
 }
 
@@ -119,8 +127,9 @@ impl Paths {
     /// Paths from the room's point p.
     ///
     /// # Errors
-    /// If there are more than [`MOST_BOUNCES`] to be counted; if q is not in (0, 0.9999\], for at 1 a path would never end; or if paths end by their
-    /// throughput and an albedo is above 0.999, where they hardly would.
+    /// If there are more than [`MOST_BOUNCES`] to be counted; if q is not in (0, 0.9999\], for at 1 a path
+    /// would never end; or if paths end by their throughput and an albedo is above 0.999, where they hardly
+    /// would.
     pub fn new(room: BoxRoom, bounces: Bounces, directions: Hemisphere, light: FindLight) -> Result<Self> {
         let count = |k: u32| {
             require_count(
@@ -150,7 +159,8 @@ impl Paths {
             }
             Bounces::AllByThroughput => {
                 let albedo = most_albedo(&room);
-                let allowed = "at most 0.999 where nothing but absorption ends a path (or choose a q or a number of bounces)";
+                let allowed = "at most 0.999 where nothing but absorption ends a path (or choose a q or a \
+                               number of bounces)";
                 require("the largest albedo", albedo, albedo <= MOST_ALBEDO, allowed)?;
                 ([0, u32::MAX], Ending::ByThroughput)
             }
@@ -159,17 +169,20 @@ impl Paths {
         Ok(Self { numbers: paths.numbers_of_each(), ..paths })
     }
 
-    /// The same paths computed in `f32`, in about half the time, along the same paths from the same numbers: speed against accuracy. Draws are summed in `f64` all the same.
+    /// The same paths computed in `f32`, in about half the time, along the same paths from the same numbers:
+    /// speed against accuracy. Draws are summed in `f64` all the same.
     ///
-    /// Its mean is off by rounding, and by the coarser grid k·2⁻²⁴ of its uniform numbers. In the sheet's scene no such bias was seen: with cosine directions and the light sampled it is 0 ± 7e-7 of
-    /// the light of one bounce in 10⁹ paths, and 0 ± 1.6e-5 of that of up to fifteen in 1.5·10⁸.
+    /// Its mean is off by rounding, and by the coarser grid k·2⁻²⁴ of its uniform numbers. In the sheet's
+    /// scene no such bias was seen: with cosine directions and the light sampled it is 0 ± 7e-7 of the light
+    /// of one bounce in 10⁹ paths, and 0 ± 1.6e-5 of that of up to fifteen in 1.5·10⁸.
     ///
-    /// Radiances of any size that a scene allows are scaled on the way. What cannot be scaled is what lies between the strongest part of the light and the
-    /// weakest.
+    /// Radiances of any size that a scene allows are scaled on the way. What cannot be scaled is what lies
+    /// between the strongest part of the light and the weakest.
     ///
     /// # Errors
-    /// If a path's throughput would leave `f32`: if the smallest albedo but 0 is below 1e-25 to the power of the fewest bounces that count (two, if fewer do and so many may); or if the faces emit
-    /// less than 1e-10 of L_e A/π, or of L_e where light is found by chance.
+    /// If a path's throughput would leave `f32`: if the smallest albedo but 0 is below 1e-25 to the power of
+    /// the fewest bounces that count (two, if fewer do and so many may); or if the faces emit less than 1e-10
+    /// of L_e A/π, or of L_e where light is found by chance.
     ///
     /// ```
     /// use unbiased::paths::room::{BoxRoom, Scene};
@@ -213,7 +226,8 @@ impl Paths {
         }
     }
 
-    /// A power of two of the size of the light and of what the faces emit: divided by it, both are in reach of `f32`, and no bit is lost.
+    /// A power of two of the size of the light and of what the faces emit: divided by it, both are in reach
+    /// of `f32`, and no bit is lost.
     fn scale(&self) -> f64 {
         let exponent = self.light().max(self.room.scene().emission).to_bits() & (0x7ff << 52);
         if exponent == 0 { 1.0 } else { f64::from_bits(exponent) }
@@ -239,16 +253,22 @@ impl Paths {
         self.counted[1]
     }
 
-    /// Why error bars are not to be trusted, if they are not: the variance may be infinite, or so few paths hold most of it that a run of a million does not meet them.
+    /// Why error bars are not to be trusted, if they are not: the variance may be infinite, or so few paths
+    /// hold most of it that a run of a million does not meet them.
     ///
-    /// A path's squared throughput grows by E\[(ρ cos θ/(π p(ω)))²\]/q a bounce, times the q of going on: ρ²/q with cosine directions, (4/3)ρ²/q with uniform ones. It must
-    /// stay below 1 for the largest albedo ρ to be safe. And light samples near the light's edge have an infinite variance where the light touches a wall.
+    /// A path's squared throughput grows by E\[(ρ cos θ/(π p(ω)))²\]/q a bounce, times the q of going on:
+    /// ρ²/q with cosine directions, (4/3)ρ²/q with uniform ones. It must stay below 1 for the largest albedo
+    /// ρ to be safe. And light samples near the light's edge have an infinite variance where the light
+    /// touches a wall.
     ///
-    /// An error bar from n draws has itself a relative error of about √(κ/4n), with κ = E X⁴/(E X²)². A throughput made of k uniform directions has
-    /// κ = ((16/5)/(4/3)²)ᵏ = (9/5)ᵏ, whatever the albedo, and light that one path in m finds by chance m times that. From κ = 10⁶ on it is told; in so many draws or fewer, error bars are
-    /// mostly too short. For a sum up to K bounces κ is at most (Σ (16/5)^(k/4) ρᵏ)⁴/(E X²)², and by chance m is estimated from the light's part of all faces.
-    /// Samples of a light at the distance a from the walls, taken from there, have κ of about 8/a³: with c, d and y the way down, across and along, E Xⁿ is in proportion to
-    /// ∫ (cd)ⁿ/(c² + d² + y²)²ⁿ over d > a, 0.131/a for n = 2 and 0.00112/a⁵ for n = 4.
+    /// An error bar from n draws has itself a relative error of about √(κ/4n), with κ = E X⁴/(E X²)². A
+    /// throughput made of k uniform directions has κ = ((16/5)/(4/3)²)ᵏ = (9/5)ᵏ, whatever the albedo, and
+    /// light that one path in m finds by chance m times that. From κ = 10⁶ on it is told; in so many draws or
+    /// fewer, error bars are mostly too short. For a sum up to K bounces κ is at most (Σ (16/5)^(k/4) ρᵏ)⁴/(E
+    /// X²)², and by chance m is estimated from the light's part of all faces. Samples of a light at the
+    /// distance a from the walls, taken from there, have κ of about 8/a³: with c, d and y the way down,
+    /// across and along, E Xⁿ is in proportion to ∫ (cd)ⁿ/(c² + d² + y²)²ⁿ over d > a, 0.131/a for n = 2 and
+    /// 0.00112/a⁵ for n = 4.
     ///
     /// ```
     /// # use unbiased::paths::room::{BoxRoom, Scene};
@@ -257,7 +277,8 @@ impl Paths {
     /// let room = BoxRoom::new(Scene::default())?;
     /// let by = |directions| Paths::new(room, Bounces::Exactly(64), directions, FindLight::BySampling);
     /// assert_eq!(by(Hemisphere::Cosine)?.caution(), None);
-    /// assert!(by(Hemisphere::Uniform)?.caution().unwrap().ends_with("of fewer than about 1e16 draws means nothing"));
+    /// let caution = by(Hemisphere::Uniform)?.caution().unwrap();
+    /// assert!(caution.ends_with("of fewer than about 1e16 draws means nothing"));
     /// # Ok::<(), unbiased::Error>(())
     /// ```
     pub fn caution(&self) -> Option<String> {
@@ -278,7 +299,8 @@ impl Paths {
             // cosine's throughputs never exceed 1 then, and uniform ones grow while they do
             Ending::ByThroughput if self.directions == Hemisphere::Uniform && growth >= 1.0 => {
                 return Some(format!(
-                    "{infinite} the squared throughput of a path grows by {shown} = {growth:.4} a bounce for the largest albedo, and nothing ends a path of throughput 1 or more"
+                    "{infinite} the squared throughput of a path grows by {shown} = {growth:.4} a bounce for \
+                     the largest albedo, and nothing ends a path of throughput 1 or more"
                 ));
             }
             _ => {}
@@ -317,7 +339,8 @@ impl Paths {
         if near { 8.0 / beside.powi(3) } else { 1.0 }
     }
 
-    /// E X⁴/(E X²)² of what a path that is never ended finds, or more, in a room where every vertex sees the same light.
+    /// E X⁴/(E X²)² of what a path that is never ended finds, or more, in a room where every vertex sees the
+    /// same light.
     fn kurtosis_of_throughputs(&self) -> f64 {
         if self.ending != Ending::Never || self.directions == Hemisphere::Cosine {
             return 1.0;
@@ -338,7 +361,8 @@ impl Paths {
         ratio * ratio
     }
 
-    /// The part of the paths that find the light by chance, roughly: a bounce after the other, the light's part of all faces.
+    /// The part of the paths that find the light by chance, roughly: a bounce after the other, the light's
+    /// part of all faces.
     fn found_by_chance(&self) -> f64 {
         let scene = self.room.scene();
         let dark = scene.light_half_width == 0.0 || scene.emission > 0.0 || self.counted[1] == 0;
@@ -351,13 +375,15 @@ impl Paths {
         (self.room.light_area() / area * bounces).min(1.0)
     }
 
-    /// An unbiased estimate of the radiance that leaves `vertex`, in W m⁻² sr⁻¹, along one random path: L̂_o(p_j) to plug in for [`reflected`], which has an example.
+    /// An unbiased estimate of the radiance that leaves `vertex`, in W m⁻² sr⁻¹, along one random path:
+    /// L̂_o(p_j) to plug in for [`reflected`], which has an example.
     #[inline]
     pub fn light_from(&self, vertex: &Vertex, rng: &mut Stream) -> f64 {
         self.walk(vertex, rng, |_| ())
     }
 
-    /// One path with its vertices, for drawing: the same that [`draw`](Estimator::draw) takes from the same stream.
+    /// One path with its vertices, for drawing: the same that [`draw`](Estimator::draw) takes from the same
+    /// stream.
     ///
     /// ```
     /// # use unbiased::paths::room::{BoxRoom, Scene};
@@ -427,7 +453,8 @@ impl Paths {
         light
     }
 
-    /// With what probability a path of this throughput goes on: rounded up to the grid of the uniform numbers, on which it is kept exactly.
+    /// With what probability a path of this throughput goes on: rounded up to the grid of the uniform
+    /// numbers, on which it is kept exactly.
     #[inline(always)]
     fn goes_on<T: Real>(&self, throughput: T) -> T {
         match self.ending {
@@ -448,13 +475,15 @@ impl Paths {
         2 * u64::from(last + if self.samples_light() { samples } else { 0 })
     }
 
-    /// The most rays of a path: once the light was sampled for the last time, only what the faces emit is left to be found.
+    /// The most rays of a path: once the light was sampled for the last time, only what the faces emit is
+    /// left to be found.
     fn last(&self) -> u32 {
         let most = self.counted[1];
         if self.samples_light() && self.room.scene().emission == 0.0 { most.saturating_sub(1) } else { most }
     }
 
-    /// cos θ/(π p(ω)), what is left of f_r cos θ/p(ω) beside the albedo: 1 for cosine directions, 2 cos θ for uniform ones.
+    /// cos θ/(π p(ω)), what is left of f_r cos θ/p(ω) beside the albedo: 1 for cosine directions, 2 cos θ for
+    /// uniform ones.
     #[inline]
     fn cosine_over_pdf(&self, direction: &Direction) -> f64 {
         match self.directions {
@@ -548,10 +577,11 @@ pub struct Sample {
     pub visible: bool,
 }
 
-/// The estimator of 4.3, f_r L̂_o(p_j) cos θ/p(ω): light that comes to p from the points p_j it sees, in directions drawn from `directions`.
+/// The estimator of 4.3, f_r L̂_o(p_j) cos θ/p(ω): light that comes to p from the points p_j it sees, in
+/// directions drawn from `directions`.
 ///
-/// `outgoing` is L_o(p_j, −ω), or any unbiased estimate of it that takes its random numbers from the stream. With [`BoxRoom::direct`] it is
-/// the part of two bounces, without any variance from p_j on.
+/// `outgoing` is L_o(p_j, −ω), or any unbiased estimate of it that takes its random numbers from the stream.
+/// With [`BoxRoom::direct`] it is the part of two bounces, without any variance from p_j on.
 ///
 /// ```
 /// use unbiased::paths::room::{BoxRoom, Scene};

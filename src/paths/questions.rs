@@ -60,15 +60,20 @@ pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "4.1",
         title: "Paths of two bounces",
-        statement: "The cube stands in a room; all faces are diffuse, and a light hangs in the ceiling. Draw several paths of two bounces that end at p, on the cube's top, \
-                    and go on to the eye. Label ω_o, ω_i, p and the point p_j of the room that each of them meets first.",
-        hint: "Draw backwards, as a path tracer does: from p in a random direction ω_i to the point p_j that it meets, and from there to the light. A bounce is a vertex between light and eye.",
+        statement: "The cube stands in a room; all faces are diffuse, and a light hangs in the ceiling. Draw \
+                    several paths of two bounces that end at p, on the cube's top, \
+                    and go on to the eye. Label ω_o, ω_i, p and the point p_j of the room that each of them \
+                    meets first.",
+        hint: "Draw backwards, as a path tracer does: from p in a random direction ω_i to the point p_j that \
+               it meets, and from there to the light. A bounce is a vertex between light and eye.",
         formula: "light → p_j → p → eye: two bounces, at p_j and at p, for every ω_i above the surface",
-        latex: &[
-            r"\text{light} \to \mathbf p_j \to \mathbf p \xrightarrow{\;\omega_o\;} \text{eye}, \qquad \omega_{i,j} = \frac{\mathbf p_j - \mathbf p}{\lVert \mathbf p_j - \mathbf p\rVert}",
-        ],
-        answer: "From p the direction ω_i is drawn at random, uniformly or in proportion to cos θ, and a ray is followed to p_j; there the light is looked for. ω_i points away from p, towards where \
-                 the light comes from. From the cube's top only the walls above it and the ceiling are seen; the ceiling lies in the light's plane and gets none of it, so two-bounce light comes by way of the walls.",
+        latex: &[r"\text{light} \to \mathbf p_j \to \mathbf p \xrightarrow{\;\omega_o\;} \text{eye},
+              \qquad \omega_{i,j} = \frac{\mathbf p_j - \mathbf p}{\lVert \mathbf p_j - \mathbf p\rVert}"],
+        answer: "From p the direction ω_i is drawn at random, uniformly or in proportion to cos θ, and a ray \
+                 is followed to p_j; there the light is looked for. ω_i points away from p, towards where \
+                 the light comes from. From the cube's top only the walls above it and the ceiling are seen; \
+                 the ceiling lies in the light's plane and gets none of it, so two-bounce light comes by way \
+                 of the walls.",
         numbers: &[],
         wrong: &[
             Wrong {
@@ -86,7 +91,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
             },
         ],
         on_the_original: Some(
-            "The room, its light and its measures are this workbook's: 4 m wide, 4 m deep, 4 m high, a cube of 1 m on the floor, a square light of «2s» m in the middle of the ceiling.",
+            "The room, its light and its measures are this workbook's: 4 m wide, 4 m deep, 4 m high, a cube \
+             of 1 m on the floor, a square light of «2s» m in the middle of the ceiling.",
         ),
         example: "q4_1_two_bounces",
         module: "paths",
@@ -96,14 +102,18 @@ pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "4.2",
         title: "Paths of three bounces",
-        statement: "Draw several paths of three bounces that end at p. Label ω_o, and the points p_j and p_j′ on the way.",
-        hint: "One more vertex: from p_j another random direction, above the face that p_j lies on, leads to p_j′.",
+        statement: "Draw several paths of three bounces that end at p. Label ω_o, and the points p_j and \
+                    p_j′ on the way.",
+        hint: "One more vertex: from p_j another random direction, above the face that p_j lies on, leads to \
+               p_j′.",
         formula: "light → p_j′ → p_j → p → eye: three bounces, at p_j′, p_j and p",
-        latex: &[
-            r"\text{light} \to \mathbf p_j' \to \mathbf p_j \to \mathbf p \xrightarrow{\;\omega_o\;} \text{eye}",
-        ],
-        answer: "Every vertex draws its next direction around its own normal. A path of three bounces sees more of the room than one of two: floor, ceiling and the cube's sides are reached now. Each bounce \
-                 multiplies the light by the albedo of the face, «ρ_wall» on a wall, so what comes after more bounces is less, but never nothing.",
+        latex: &[r"\text{light} \to \mathbf p_j' \to \mathbf p_j \to \mathbf p \xrightarrow{\;\omega_o\;}
+              \text{eye}"],
+        answer: "Every vertex draws its next direction around its own normal. A path of three bounces sees \
+                 more of the room than one of two: floor, ceiling and the cube's sides are reached now. Each \
+                 bounce \
+                 multiplies the light by the albedo of the face, «ρ_wall» on a wall, so what comes after \
+                 more bounces is less, but never nothing.",
         numbers: &[],
         wrong: &[
             Wrong { answer: "p_j′ on the same wall as p_j", slip: "a flat face does not see itself" },
@@ -125,25 +135,38 @@ pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "4.3",
         title: "The estimator for paths",
-        statement: "n paths of two bounces are followed from the eye to p, to p_j in directions ω_ij drawn from p(ω), and to the light. Express the Monte Carlo estimator of the outgoing radiance at p \
+        statement: "n paths of two bounces are followed from the eye to p, to p_j in directions ω_ij drawn \
+                    from p(ω), and to the light. Express the Monte Carlo estimator of the outgoing radiance \
+                    at p \
                     in terms of the radiance L_o that leaves p_j.",
-        hint: "It is the estimator of 3.4. What is the light that arrives at p from ω_ij, seen from where it left?",
+        hint: "It is the estimator of 3.4. What is the light that arrives at p from ω_ij, seen from where it \
+               left?",
         formula: "L̂_o(p, ω_o) = 1/n Σ (ρ/π) L_o(p_j, −ω_ij) cos θ_ij / p(ω_ij), n counting all directions",
-        latex: &[
-            r"\hat L_o(\mathbf p, \omega_o) = \frac1n \sum_{j=1}^n \frac{f_r\, L_o(\mathbf p_j, -\omega_{i,j}) \cos\theta_{i,j}}{p(\omega_{i,j})} = \frac1n \sum_{j=1}^n \frac{\frac{\rho}{\pi}\, L_o(\mathbf p_j, -\omega_{i,j}) \cos\theta_{i,j}}{p(\omega_{i,j})}",
-        ],
-        answer: "Radiance does not change along a ray: what arrives at p from ω_ij is what left p_j towards p, L_i(p, ω_ij) = L_o(p_j, −ω_ij). If L_o(p_j) is the light that p_j reflects once, this is the part of two bounces; \
-                 an unbiased estimate of it in its place, with random numbers of its own, leaves the mean as it is, because the mean of a product of independent factors is the product of their means. So p_j may again ask a p_j′, and \
-                 so on: that is path tracing, and Russian roulette (5) ends it. In this room the light after one bounce, 8F with F the form factor of two parallel squares, and after two, an integral over the walls, are known exactly.",
+        latex: &[r"\hat L_o(\mathbf p, \omega_o)
+              = \frac1n \sum_{j=1}^n \frac{f_r\, L_o(\mathbf p_j, -\omega_{i,j})
+              \cos\theta_{i,j}}{p(\omega_{i,j})}
+              = \frac1n \sum_{j=1}^n \frac{\frac{\rho}{\pi}\, L_o(\mathbf p_j, -\omega_{i,j})
+              \cos\theta_{i,j}}{p(\omega_{i,j})}"],
+        answer: "Radiance does not change along a ray: what arrives at p from ω_ij is what left p_j towards \
+                 p, L_i(p, ω_ij) = L_o(p_j, −ω_ij). If L_o(p_j) is the light that p_j reflects once, this is \
+                 the part of two bounces; \
+                 an unbiased estimate of it in its place, with random numbers of its own, leaves the mean as \
+                 it is, because the mean of a product of independent factors is the product of their means. \
+                 So p_j may again ask a p_j′, and \
+                 so on: that is path tracing, and Russian roulette (5) ends it. In this room the light after \
+                 one bounce, 8F with F the form factor of two parallel squares, and after two, an integral \
+                 over the walls, are known exactly.",
         numbers: &[],
         wrong: &[
             Wrong {
                 answer: "1/n′, n′ the directions that are not occluded",
-                slip: "an occluded direction is a sample, too: it adds 0. With light only at cos θ > ½ and uniform directions this doubles the answer",
+                slip: "an occluded direction is a sample, too: it adds 0. With light only at cos θ > ½ and \
+                       uniform directions this doubles the answer",
             },
             Wrong {
                 answer: "cos θ_ij forgotten",
-                slip: "the tilt of p's face; with cosine-distributed directions it cancels against p(ω), but not before",
+                slip: "the tilt of p's face; with cosine-distributed directions it cancels against p(ω), but \
+                       not before",
             },
             Wrong {
                 answer: "L_o(p_j, ω_ij)",
@@ -155,7 +178,9 @@ pub(crate) const QUESTIONS: &[Question] = &[
             },
         ],
         on_the_original: Some(
-            "The original's sum is an estimate, so it wants a hat; p is evaluated at each ω_ij; and n must count all directions, not those of non-occluded paths alone. It is the two-bounce part of the radiance, not all of it.",
+            "The original's sum is an estimate, so it wants a hat; p is evaluated at each ω_ij; and n must \
+             count all directions, not those of non-occluded paths alone. It is the two-bounce part of the \
+             radiance, not all of it.",
         ),
         example: "q4_3_paths",
         module: "paths",

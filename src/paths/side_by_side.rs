@@ -1,9 +1,10 @@
-//! Many paths side by side, each in a lane of a vector: the loop of [`Paths::walk`] with selections in place of branches, from the same
-//! numbers.
+//! Many paths side by side, each in a lane of a vector: the loop of [`Paths::walk`] with selections in place
+//! of branches, from the same numbers.
 //!
-//! Faces are not told apart one by one. A ray ends on a plane across one axis, where the normal is three numbers, one of them ±1 against the ray and the
-//! others 0, and the coordinate on that axis is set exactly, as in the plain loop. A path that has ended goes on with throughput 0: where roulette ends it, until the next one takes
-//! its lane.
+//! Faces are not told apart one by one. A ray ends on a plane across one axis, where the normal is three
+//! numbers, one of them ±1 against the ray and the others 0, and the coordinate on that axis is set exactly,
+//! as in the plain loop. A path that has ended goes on with throughput 0: where roulette ends it, until the
+//! next one takes its lane.
 
 use pulp::NullaryFnOnce;
 
@@ -16,7 +17,8 @@ use crate::stream::{Abreast, LANES, Stream};
 /// A number for each path of a row.
 type Each<T> = [T; LANES];
 
-/// Rows of paths under way together, at most, and rows of random numbers that wait for them: they stay in the cache.
+/// Rows of paths under way together, at most, and rows of random numbers that wait for them: they stay in the
+/// cache.
 const ROWS: usize = 8;
 const NUMBERS: usize = 256;
 
@@ -118,7 +120,8 @@ impl<'a, T: Real> Walk<'a, T> {
         Self { paths, room: Room::new(&paths.room, scale), start, sampled, scale }
     }
 
-    /// Paths that all have the same number of bounces, and as many numbers each; the first is in `lane` of its row. `numbers` are of as many rows as `sets` says. Returns the rays.
+    /// Paths that all have the same number of bounces, and as many numbers each; the first is in `lane` of
+    /// its row. `numbers` are of as many rows as `sets` says. Returns the rays.
     fn together(&self, numbers: &[Each<T>], sets: usize, lane: usize, draws: &mut [f64]) -> u64 {
         let mut fronts = [self.start; ROWS];
         let fronts = &mut fronts[..(lane + draws.len()).div_ceil(LANES)];
@@ -155,7 +158,8 @@ impl<'a, T: Real> Walk<'a, T> {
         rays
     }
 
-    /// Paths that roulette ends: where one has ended the next of its lane begins. Each takes as many numbers at every vertex.
+    /// Paths that roulette ends: where one has ended the next of its lane begins. Each takes as many numbers
+    /// at every vertex.
     fn one_after_another(&self, abreast: &mut Abreast<'_>, draws: &mut [f64]) {
         let mut fronts = [self.start];
         for lane in 0..LANES {
@@ -201,7 +205,8 @@ impl<'a, T: Real> Walk<'a, T> {
         widest(Sample { room: self.room, fronts, numbers, lanes: LANES })
     }
 
-    /// Follows every path that goes on to its next vertex, whose own light counts if `counted`. Returns the rays.
+    /// Follows every path that goes on to its next vertex, whose own light counts if `counted`. Returns the
+    /// rays.
     fn go(&self, fronts: &mut [Front<T>], numbers: Numbers<'_, T>, reflect: bool, counted: bool) -> u64 {
         let Self { room, paths, .. } = *self;
         let of_faces = if counted { room.emission } else { T::of(0.0) };
@@ -252,7 +257,8 @@ impl<T: Real> Room<T> {
         }
     }
 
-    /// The part of `point`'s radiance that a point of the light, at the fractions (u, v) of it, sends by way of this vertex, and whether a ray was needed to see it.
+    /// The part of `point`'s radiance that a point of the light, at the fractions (u, v) of it, sends by way
+    /// of this vertex, and whether a ray was needed to see it.
     #[inline(always)]
     fn lit(&self, at: [T; 3], normal: [T; 3], [u, v]: [T; 2]) -> (T, bool) {
         let (zero, one, two) = (T::of(0.0), T::of(1.0), T::of(2.0));
@@ -278,7 +284,8 @@ fn total<T: Real>(counts: Each<T>) -> u64 {
     counts.iter().map(|count| count.to_f64()).sum::<f64>() as u64
 }
 
-/// A direction without a component that is 0, or nearly, which moves nothing but would have no inverse; and the inverses of its components, by one division.
+/// A direction without a component that is 0, or nearly, which moves nothing but would have no inverse; and
+/// the inverses of its components, by one division.
 #[inline(always)]
 fn inverted<T: Real>(direction: [T; 3]) -> ([T; 3], [T; 3]) {
     let [x, y, z] = direction.map(|d| if d.abs() < T::FLAT { T::FLAT } else { d });
@@ -287,7 +294,8 @@ fn inverted<T: Real>(direction: [T; 3]) -> ([T; 3], [T; 3]) {
     ([x, y, z], [y * z * all, x * z * all, xy * all])
 }
 
-/// Where a line enters the cube and where it leaves it, and the axis across which it enters; it meets the cube where it enters before it leaves. Nothing passes under it.
+/// Where a line enters the cube and where it leaves it, and the axis across which it enters; it meets the
+/// cube where it enters before it leaves. Nothing passes under it.
 #[inline(always)]
 fn cube<T: Real>(at: [T; 3], inverse: [T; 3]) -> (T, T, [bool; 3]) {
     let slab = |at: T, inverse: T| {
@@ -312,7 +320,8 @@ struct Sample<'a, T> {
     room: Room<T>,
     fronts: &'a mut [Front<T>],
     numbers: Numbers<'a, T>,
-    /// [`LANES`], which the compiler must not know, or it would unroll a loop before it looks whether it goes wide.
+    /// [`LANES`], which the compiler must not know, or it would unroll a loop before it looks whether it goes
+    /// wide.
     lanes: usize,
 }
 
@@ -575,8 +584,10 @@ mod tests {
         [Stream::new(seed, 0), sobol, jittered]
     }
 
-    /// Path by path the light of the plain loop from the same numbers, and as many numbers and rays. Rounding moves a hit by 1e-16, and every further bounce that grazes a face makes more of it. A ray within 1e-14 of an edge may end on the other side of it,
-    /// which by the lengths of the edges happens to fewer than one path in 1e12 here.
+    /// Path by path the light of the plain loop from the same numbers, and as many numbers and rays. Rounding
+    /// moves a hit by 1e-16, and every further bounce that grazes a face makes more of it. A ray within 1e-14
+    /// of an edge may end on the other side of it, which by the lengths of the edges happens to fewer than
+    /// one path in 1e12 here.
     #[test]
     fn every_path_is_one_of_the_plain_loop() {
         let (mut lit, mut seed) = (0, 0);
@@ -601,7 +612,8 @@ mod tests {
         assert!(lit > 10_000, "{lit} paths found light");
     }
 
-    /// In single precision the same paths, one at a time or many: of up to three bounces all but those that pass an edge by 1e-6, to some roundings of 6e-8 each.
+    /// In single precision the same paths, one at a time or many: of up to three bounces all but those that
+    /// pass an edge by 1e-6, to some roundings of 6e-8 each.
     #[test]
     fn single_precision_follows_the_same_paths() {
         let (mut far, mut all, mut seed) = (0, 0, 0);
@@ -628,7 +640,8 @@ mod tests {
         assert!(all > 10_000 && far < all / 1000, "{far} of {all}");
     }
 
-    /// The same bits with vectors of any width, and without: what this processor gives is what every other gives.
+    /// The same bits with vectors of any width, and without: what this processor gives is what every other
+    /// gives.
     #[test]
     fn wide_and_narrow_loops_have_the_same_bits() {
         let mut seed = 0;
@@ -649,7 +662,8 @@ mod tests {
         });
     }
 
-    /// Every draw is filled, whatever their number, and with a path of its own: as many different ones as there should be.
+    /// Every draw is filled, whatever their number, and with a path of its own: as many different ones as
+    /// there should be.
     #[test]
     fn any_number_of_draws_is_filled() {
         let room = BoxRoom::new(Scene { emission: 0.3, ..Scene::default() }).unwrap();

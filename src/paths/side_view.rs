@@ -27,11 +27,14 @@ const TRIED: u64 = 100_000;
 /// Paths that can be made out, at most, from which those are chosen that can be told apart.
 const CANDIDATES: usize = 300;
 
-/// 4.1 and 4.2: up to three paths of two or of three bounces, as they were sampled, from the side: the student's edition, which has room, cube, light, eye and p only, and the solution.
+/// 4.1 and 4.2: up to three paths of two or of three bounces, as they were sampled, from the side: the
+/// student's edition, which has room, cube, light, eye and p only, and the solution.
 ///
-/// Of the paths that reach the light after just as many bounces as `paths` counts at most, the first ones are taken that can be told apart in a drawing: their vertices are apart and lie on
-/// faces that are seen edge on, they pass neither before nor behind the cube, and there is room for their labels. If none of the first 100,000 is such a path the title says "No", and the description why.
-/// Where light is found by chance few paths reach it, and mostly fewer than `count` are drawn.
+/// Of the paths that reach the light after just as many bounces as `paths` counts at most, the first ones are
+/// taken that can be told apart in a drawing: their vertices are apart and lie on faces that are seen edge
+/// on, they pass neither before nor behind the cube, and there is room for their labels. If none of the first
+/// 100,000 is such a path the title says "No", and the description why. Where light is found by chance few
+/// paths reach it, and mostly fewer than `count` are drawn.
 ///
 /// The room is seen from the south, or from the east where p would be before the cube or behind it.
 ///
@@ -159,7 +162,8 @@ impl SideView {
             .filter(|path| self.reads_well(path) && self.told_apart(std::slice::from_ref(path)))
             .take(CANDIDATES)
             .collect();
-        // the room by itself may be too crowded already, where p lies in a corner; more than rounding must not be added
+        // the room by itself may be too crowded already, where p lies in a corner; more than rounding must
+        // not be added
         let crowded = self.picture(&[], Edition::Solution).1;
         let mut most = Vec::new();
         // the first one may leave no room for others: begin with the next one then
@@ -181,7 +185,8 @@ impl SideView {
         most
     }
 
-    /// Whether any light can leave p after two bounces or more: the cube does not see itself, so one of two vertices is on a wall.
+    /// Whether any light can leave p after two bounces or more: the cube does not see itself, so one of two
+    /// vertices is on a wall.
     fn can_be_lit(&self) -> bool {
         let scene = self.room.scene();
         let reflects = scene.wall_albedo > 0.0 && self.room.albedo(&self.room.point()) > 0.0;
@@ -315,20 +320,35 @@ impl SideView {
         let (title, description) = match edition {
             Edition::Student => (
                 format!("Draw paths of {word} bounces to p"),
-                "The room seen from the side, 4 m wide and high, with the cube of 1 m on its floor, the light in the ceiling, the point p and the eye.".into(),
+                "The room seen from the side, 4 m wide and high, with the cube of 1 m on its floor, the \
+                 light in the ceiling, the point p and the eye."
+                    .into(),
             ),
             Edition::Solution if chosen.is_empty() => {
                 let why = if self.can_be_lit() {
-                    format!("Of {TRIED} paths (seed {seed}) none reached the light and could be made out in a drawing")
+                    format!(
+                        "Of {TRIED} paths (seed {seed}) none reached the light and could be made out in \
+                             a drawing"
+                    )
                 } else {
-                    "No light leaves p after that many bounces: there is no light, or what the paths meet reflects none".into()
+                    "No light leaves p after that many bounces: there is no light, or what the paths meet \
+                     reflects none"
+                        .into()
                 };
-                (format!("No sampled paths of {word} bounces"), format!("The room seen from the side. {why}. ωₒ leads from p to the eye, n is the normal."))
+                (
+                    format!("No sampled paths of {word} bounces"),
+                    format!(
+                        "The room seen from the side. {why}. \
+                    ωₒ leads from p to the eye, n is the normal."
+                    ),
+                )
             }
             Edition::Solution => (
                 format!("{number} sampled {paths} of {word} bounces"),
                 format!(
-                    "The room seen from the side. Numbered paths, as they were sampled (seed {seed}), go from p in a direction ωᵢ to a point p₁, p₂, … on another face{} and on to the light, none through the cube; ωₒ leads from p to the eye. \
+                    "The room seen from the side. Numbered paths, as they were sampled (seed {seed}), go \
+                     from p in a direction ωᵢ to a point p₁, p₂, … on another face{} and on to the light, \
+                     none through the cube; ωₒ leads from p to the eye. \
                      Short arrows are normals n. What looks short may lead far in depth.",
                     if bounces > 2 { ", from there to p₁′, p₂′, …" } else { "" }
                 ),

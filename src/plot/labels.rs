@@ -44,7 +44,8 @@ impl Box2 {
     }
 }
 
-/// About how many points wide a text is: at 8 points a letter is about 5.2 wide, a raised or lowered one about 3.4.
+/// About how many points wide a text is: at 8 points a letter is about 5.2 wide, a raised or lowered one
+/// about 3.4.
 pub(super) fn width(text: &str) -> f64 {
     let of = |c: char| {
         if "₀₁₂₃₄₅₆₇₈₉ₒᵢⱼ′⁰¹²³⁴⁵⁶⁷⁸⁹⁻.,|il()".contains(c) {
@@ -103,7 +104,8 @@ impl Labels {
         }
     }
 
-    /// How much the labels placed so far are in the way: the lines that they cross, and what they cover of each other. 0, but for rounding, is a drawing that reads well.
+    /// How much the labels placed so far are in the way: the lines that they cross, and what they cover of
+    /// each other. 0, but for rounding, is a drawing that reads well.
     pub fn in_the_way(&self) -> f64 {
         self.in_the_way
     }

@@ -1,8 +1,9 @@
 //! A figure for each thing worth looking at, as SVG with its numbers as CSV beside it.
 //!
-//! Every figure has a title and a description for readers who cannot see it, is 85 or 170 mm wide, reads in grey, and is the
-//! same bytes on every run. Where a question asks the student to mark or draw something there are two
-//! editions: [`Edition::Student`] has the same canvas and axes with nothing of the answer on it.
+//! Every figure has a title and a description for readers who cannot see it, is 85 or 170 mm wide, reads in
+//! grey, and is the same bytes on every run. Where a question asks the student to mark or draw something
+//! there are two editions: [`Edition::Student`] has the same canvas and axes with nothing of the answer on
+//! it.
 
 mod labels;
 mod panel;
@@ -63,8 +64,8 @@ impl Figure {
         &self.csv
     }
 
-    /// Writes `name.svg` and `name.csv` into `folder`, which is made if need be (with the features `png` and `pdf`
-    /// those formats, too). Each file appears whole or not at all. Returns the paths, the SVG's first.
+    /// Writes `name.svg` and `name.csv` into `folder`, which is made if need be (with the features `png` and
+    /// `pdf` those formats, too). Each file appears whole or not at all. Returns the paths, the SVG's first.
     ///
     /// # Errors
     /// If the folder or a file cannot be written.
@@ -135,8 +136,8 @@ use resvg::usvg::fontdb as usvg_fonts;
 #[cfg(feature = "pdf")]
 use svg2pdf::usvg::fontdb as usvg_fonts;
 
-/// Writes a file so that it appears whole or not at all, and its folder if need be. Of several who write the same
-/// file at once, in this process or another, each writes a whole one, and the last one's stays.
+/// Writes a file so that it appears whole or not at all, and its folder if need be. Of several who write the
+/// same file at once, in this process or another, each writes a whole one, and the last one's stays.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     let failed =
         |error: std::io::Error| Error::Write { path: path.display().to_string(), reason: error.to_string() };

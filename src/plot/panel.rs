@@ -139,8 +139,8 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// From `low` to `high`, with about six round ticks. Where their digits would not tell, the name holds a power
-    /// of ten, of which they are multiples.
+    /// From `low` to `high`, with about six round ticks. Where their digits would not tell, the name holds a
+    /// power of ten, of which they are multiples.
     pub fn linear(name: &str, low: f64, high: f64) -> Self {
         let size = low.abs().max(high.abs());
         let power = if (0.01..1e4).contains(&size) || !size.is_normal() { 0.0 } else { size.log10().floor() };
@@ -156,7 +156,8 @@ impl Axis {
         Self { name, low, high, logarithmic: false, ticks }
     }
 
-    /// From `low` to `high` > 0, logarithmic, with ticks at powers of ten, or between them where there are few.
+    /// From `low` to `high` > 0, logarithmic, with ticks at powers of ten, or between them where there are
+    /// few.
     pub fn log(name: &str, low: f64, high: f64) -> Self {
         let (from, to) = (low.log10() - 1e-9, high.log10() + 1e-9);
         // what cannot be drawn is said of the whole figure
@@ -182,8 +183,8 @@ impl Axis {
         whole && apart && sizes.contains(&from) && sizes.contains(&self.high.abs().max(self.low.abs()))
     }
 
-    /// The ticks on an axis of this length whose labels, each of this size, do not touch: all of them, or every
-    /// second, and so on, counted from 0 if it is one of them.
+    /// The ticks on an axis of this length whose labels, each of this size, do not touch: all of them, or
+    /// every second, and so on, counted from 0 if it is one of them.
     pub fn legible(&self, length: f64, size: impl Fn(&str) -> f64) -> Vec<(f64, &str)> {
         let visible: Vec<(f64, &str)> = self
             .ticks
@@ -422,8 +423,9 @@ impl Plot {
         Ok(Figure { svg, csv: self.csv(), title: self.title.clone(), edition: self.edition, name })
     }
 
-    /// All points drawn, a row each; the columns low and high are those of bands and error bars. What is no number
-    /// has no row, nor have, for the student, curves in colour: what is to be found on them would be among the numbers.
+    /// All points drawn, a row each; the columns low and high are those of bands and error bars. What is no
+    /// number has no row, nor have, for the student, curves in colour: what is to be found on them would be
+    /// among the numbers.
     fn csv(&self) -> String {
         let mut csv = String::from("panel,series,x,y,low,high\n");
         for panel in &self.panels {

@@ -353,7 +353,8 @@ fn bold(points: f64, colour: &RGBColor) -> TextStyle<'static> {
         .pos(Pos::new(HPos::Left, VPos::Top))
 }
 
-/// Gives the document its size in mm, title and description, dashes, and text a white edge that keeps lines off it.
+/// Gives the document its size in mm, title and description, dashes, and text a white edge that keeps lines
+/// off it.
 fn finish(plot: &Plot, name: &str, svg: &str) -> String {
     let (width, height) = (plot.width.millimetres(), plot.height_mm);
     let body = svg.split_once('>').map_or("", |(_, body)| body);
@@ -367,7 +368,8 @@ fn finish(plot: &Plot, name: &str, svg: &str) -> String {
         body = body.replace(&format!("opacity=\"{opacity}\""), &format!("stroke-dasharray=\"{pattern}\""));
     }
     format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"{view}\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" \
+         viewBox=\"{view}\" \
          stroke-linejoin=\"round\" role=\"img\" aria-labelledby=\"{name}-title {name}-desc\">\n\
          <title id=\"{name}-title\">{}</title>\n<desc id=\"{name}-desc\">{}</desc>\n\
          <rect width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>{body}",

@@ -114,13 +114,19 @@ pub fn sampling_errors(rectangle: Rectangle, seed: u64) -> Result<Figure> {
         (rectangle.x_range().map(|end| typeset(end, 12)), rectangle.y_range().map(|end| typeset(end, 12)));
     Plot {
         name: "2_1_rmse",
-        title: "Errors against evaluations: four times the pairs halve the error, better placed points do more".into(),
+        title: "Errors against evaluations: four times the pairs halve the error, better placed points do \
+                more"
+            .into(),
         description: format!(
-            "Two panels on logarithmic axes, for [{a}, {b}] × [{c}, {d}]. Left: the root-mean-square error of n \
-             independent pairs for each function of the test set, measured over {REPEATS} estimates (marks), on \
+            "Two panels on logarithmic axes, for [{a}, {b}] × [{c}, {d}]. Left: the root-mean-square error \
+             of n \
+             independent pairs for each function of the test set, measured over {REPEATS} estimates (marks), \
+             on \
              the exact lines of slope −1/2; where the variance is infinite, as for 1/√(x² + y²) about the \
-             origin, the marks follow no such line. Right: the Gaussian by independent pairs (slope −1/2), all \
-             pairs (−1/4 in evaluations), jittered points (−1) and scrambled Sobol points (nearly −3/2). Seed \
+             origin, the marks follow no such line. Right: the Gaussian by independent pairs (slope −1/2), \
+             all \
+             pairs (−1/4 in evaluations), jittered points (−1) and scrambled Sobol points (nearly −3/2). \
+             Seed \
              {seed}."
         ),
         edition: Edition::Solution,
@@ -178,8 +184,8 @@ fn panel(heading: &str, curves: &[Curve]) -> Panel {
     panel
 }
 
-/// Middles of things of these heights, sorted, as near as can be to where they want to be without overlapping: those
-/// that would are put about the mean of their wishes.
+/// Middles of things of these heights, sorted, as near as can be to where they want to be without
+/// overlapping: those that would are put about the mean of their wishes.
 fn apart(wanted: &[(f64, f64)]) -> Vec<f64> {
     // blocks of neighbours that touch: how many, their height, and the sum of where their block would begin
     let mut blocks: Vec<(usize, f64, f64)> = Vec::new();
@@ -261,9 +267,12 @@ pub fn running_means(rectangle: Rectangle, seed: u64) -> Result<Figure> {
         (rectangle.x_range().map(|end| typeset(end, 12)), rectangle.y_range().map(|end| typeset(end, 12)));
     Plot {
         name: "2_1_running_mean",
-        title: "Three runs of the same estimator close in on the truth, as fast as their own error bars say".into(),
+        title: "Three runs of the same estimator close in on the truth, as fast as their own error bars \
+                say"
+        .into(),
         description: format!(
-            "Three panels, one a seed: the mean of n independent draws of area × e^(−X²−Y²) over [{a}, {b}] × [{c}, \
+            "Three panels, one a seed: the mean of n independent draws of area × e^(−X²−Y²) over [{a}, {b}] \
+             × [{c}, \
              {d}] against n from 10 to 100 000 on a logarithmic axis, in its 95 % interval, which narrows as \
              1/√n; a thin line at the truth, {}.",
             typeset(truth, 6)

@@ -34,7 +34,8 @@ impl Family {
     ];
 }
 
-/// An integrand of one of the families over the unit square, with steepness a = (a₁, a₂) and place w = (w₁, w₂).
+/// An integrand of one of the families over the unit square, with steepness a = (a₁, a₂) and place w = (w₁,
+/// w₂).
 ///
 /// (A. Genz, "Testing multidimensional integration routines", 1984.)
 ///
@@ -100,7 +101,8 @@ impl Genz {
                 let side = |a: f64, w: f64| a * ((a * (1.0 - w)).atan() + (a * w).atan());
                 side(a, u) * side(b, v)
             }
-            // [1 − 1/(1 + a) − 1/(1 + b) + 1/(1 + a + b)]/(2ab), of which the bracket is ab(2 + a + b)/((1 + a)(1 + b)(1 + a + b))
+            // [1 − 1/(1 + a) − 1/(1 + b) + 1/(1 + a + b)]/(2ab), of which the bracket is ab(2 + a + b)/((1 +
+            // a)(1 + b)(1 + a + b))
             Family::CornerPeak => 0.5 * (2.0 + a + b) / ((1.0 + a) * (1.0 + b) * (1.0 + a + b)),
             Family::Gaussian => {
                 let side = |a: f64, w: f64| bell(1.0, [-a * w, a * (1.0 - w)]) / a;

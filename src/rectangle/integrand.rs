@@ -6,7 +6,8 @@ use std::fmt;
 use super::Rectangle;
 use crate::fast;
 
-/// An integrand of the test set, with its integral over a rectangle and the variance of the estimator A f(X, Y).
+/// An integrand of the test set, with its integral over a rectangle and the variance of the estimator A f(X,
+/// Y).
 ///
 /// On the sheet's square [−2, 2]²:
 ///
@@ -159,9 +160,11 @@ impl Integrand {
     /// ```
     /// use unbiased::rectangle::{Integrand, Rectangle};
     ///
-    /// // 32 values each of x and y: a gain for the bell, although small for 32 times the evaluations, and none for the paraboloid
+    /// // 32 values each of x and y: a gain for the bell, although small for 32 times the evaluations, and none
+    /// // for the paraboloid
     /// let square = Rectangle::WORKSHEET;
-    /// for (f, independent, all_pairs) in [(Integrand::Gaussian, 0.4826, 0.3732), (Integrand::Paraboloid, 22.756, 22.756)] {
+    /// let variances = [(Integrand::Gaussian, 0.4826, 0.3732), (Integrand::Paraboloid, 22.756, 22.756)];
+    /// for (f, independent, all_pairs) in variances {
     ///     assert!((f.variance(&square).unwrap() / 32.0 / independent - 1.0).abs() < 1e-4);
     ///     assert!((f.all_pairs_variance(&square, 32).unwrap() / all_pairs - 1.0).abs() < 2e-4);
     /// }

@@ -40,14 +40,15 @@ use crate::estimator::{Density, Estimator, from_uniforms};
 /// X and Y are drawn independently, so their joint density is the product of the two:
 /// p(x, y) = p(x) p(y) = 1/(b − a) · 1/(d − c) inside, in 1/\[x y\], and 0 outside. (Worksheet 2.1.)
 ///
-/// X = a + (b − a)U is never outside by rounding: a itself has probability 2⁻⁵³, and b is drawn where b − 2⁻⁵³(b − a) is
-/// rounded to it. It is exact to the last place of the larger of a and X.
+/// X = a + (b − a)U is never outside by rounding: a itself has probability 2⁻⁵³, and b is drawn where b −
+/// 2⁻⁵³(b − a) is rounded to it. It is exact to the last place of the larger of a and X.
 ///
 /// ```
 /// use unbiased::{Budget, estimate, f_over_p, rectangle::Rectangle};
 ///
 /// // ∫∫ x² + y² over the sheet's square [−2, 2]², where p = 1/16, is 128/3
-/// let estimate = estimate(&f_over_p(|[x, y]| x * x + y * y, Rectangle::WORKSHEET), Budget::Draws(100_000), 1)?;
+/// let estimator = f_over_p(|[x, y]| x * x + y * y, Rectangle::WORKSHEET);
+/// let estimate = estimate(&estimator, Budget::Draws(100_000), 1)?;
 /// assert!(estimate.z(128.0 / 3.0).unwrap().abs() < 5.0);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
@@ -109,8 +110,8 @@ impl Rectangle {
         self.y
     }
 
-    /// The estimator A f(X, Y) of ∫∫ f: [`f_over_p`](crate::f_over_p)`(f, rectangle)` with the constant density 1/A
-    /// taken out of the sum.
+    /// The estimator A f(X, Y) of ∫∫ f: [`f_over_p`](crate::f_over_p)`(f, rectangle)` with the constant
+    /// density 1/A taken out of the sum.
     ///
     /// On the sheet's square its mean after n draws is ⟨Fₙ⟩ = 16/n Σ f(Xᵢ, Yᵢ). The variance of a draw is A
     /// ∫∫ f² − (∫∫ f)².
@@ -135,7 +136,8 @@ impl Rectangle {
     fn x_at(&self, u: f64) -> f64 {
         let [a, b] = self.x;
         let x = a + u * self.width;
-        // never outside: u = 1 can come of rounding in the last cell of a grid, and a + (b − a) be rounded past b
+        // never outside: u = 1 can come of rounding in the last cell of a grid, and a + (b − a) be rounded
+        // past b
         if x < b { x } else { b }
     }
 

@@ -34,23 +34,33 @@ const Y_HIGH: Letter =
 pub(crate) const QUESTIONS: &[Question] = &[Question {
     id: "2.1",
     title: "A double integral from uniform random numbers",
-    statement: "A source of random numbers hands out 2n of them, n uniform on [«x_low», «x_high»] and n on [«y_low», «y_high»], \
-                each independent of all the others. How do you estimate the integral of a function f(x, y) over the rectangle \
-                [«x_low», «x_high»] × [«y_low», «y_high»] from them, without bias? And what does that ask of f?",
-    hint: "Each draw is f over the density of the point drawn. What is the density of a pair of independent numbers?",
+    statement: "A source of random numbers hands out 2n of them, n uniform on [«x_low», «x_high»] and n on \
+                [«y_low», «y_high»], \
+                each independent of all the others. How do you estimate the integral of a function f(x, y) \
+                over the rectangle \
+                [«x_low», «x_high»] × [«y_low», «y_high»] from them, without bias? And what does that ask of \
+                f?",
+    hint: "Each draw is f over the density of the point drawn. What is the density of a pair of independent \
+           numbers?",
     formula: "⟨Fₙ⟩ = 1/n Σ f(Xᵢ, Yᵢ)/p(Xᵢ, Yᵢ) = «w h»/n Σ f(Xᵢ, Yᵢ), if ∫∫ |f| is finite",
     latex: &[
         r"p(x, y) = p(x)\,p(y) = \frac{1}{«w»} \cdot \frac{1}{«h»} = \frac{1}{«w h»}",
-        r"\langle F_n \rangle = \frac1n \sum_{i=1}^n \frac{f(X_i, Y_i)}{p(X_i, Y_i)} = \frac{«w h»}{n} \sum_{i=1}^n f(X_i, Y_i)",
+        r"\langle F_n \rangle = \frac1n \sum_{i=1}^n \frac{f(X_i, Y_i)}{p(X_i, Y_i)}
+          = \frac{«w h»}{n} \sum_{i=1}^n f(X_i, Y_i)",
         r"E\left[\frac{f(X, Y)}{p(X, Y)}\right] = \iint \frac{f(x, y)}{p(x, y)}\, p(x, y)\,dx\,dy = F",
         r"\mathrm{Var}\,\langle F_n \rangle = \frac1n \left(«w h» \iint f^2\,dx\,dy - F^2\right)",
     ],
     answer: "Take the numbers in pairs. The two of a pair are independent, so the density of the pair is the \
-             product of theirs, 1/«w h» all over the rectangle, and each f(Xᵢ, Yᵢ)/p(Xᵢ, Yᵢ) has the mean F: p cancels \
-             in the integral. The average of n of them therefore has the mean F for every n, as long as E|f| is \
-             finite. An error bar takes more, a finite E f²: 1/√(x² + y²) about the origin has a mean and no variance. \
-             All n² pairs also give an unbiased estimate, at n times the cost. The variance may fall; for f = g(x) + h(y) it \
-             does not. Spreading the points evenly does better: one in each cell of a grid, or a scrambled Sobol set.",
+             product of theirs, 1/«w h» all over the rectangle, and each f(Xᵢ, Yᵢ)/p(Xᵢ, Yᵢ) has the mean F: \
+             p cancels \
+             in the integral. The average of n of them therefore has the mean F for every n, as long as E|f| \
+             is \
+             finite. An error bar takes more, a finite E f²: 1/√(x² + y²) about the origin has a mean and no \
+             variance. \
+             All n² pairs also give an unbiased estimate, at n times the cost. The variance may fall; for f \
+             = g(x) + h(y) it \
+             does not. Spreading the points evenly does better: one in each cell of a grid, or a scrambled \
+             Sobol set.",
     numbers: &[Number {
         part: "",
         symbol: "c",
@@ -78,7 +88,8 @@ pub(crate) const QUESTIONS: &[Question] = &[Question {
     wrong: &[
         Wrong {
             answer: "c/n Σ f(Xᵢ, Xᵢ)",
-            slip: "X used again for Y: the points lie on a diagonal. f = xy then gets the mean of x² in place of \
+            slip: "X used again for Y: the points lie on a diagonal. f = xy then gets the mean of x² in \
+                   place of \
                    that of xy, while f = 1 and, on a square, f = x² + y² look right",
         },
         Wrong {
@@ -100,7 +111,8 @@ pub(crate) const QUESTIONS: &[Question] = &[Question {
         Parameter {
             name: "n",
             default: Value::Number(32.0),
-            help: "values of each of x and y; also the grid's side, and the root of the number of Sobol points: 1 to 256",
+            help: "values of each of x and y; also the grid's side, and the root of the number of Sobol \
+                   points: 1 to 256",
             letter: None,
         },
     ],

@@ -46,7 +46,8 @@ impl Rectangle {
         jittered(self.independent(f), side)
     }
 
-    /// The estimator A/n Σ f over a scrambled Sobol set of n points: [`sobol`] points for [`independent`](Self::independent).
+    /// The estimator A/n Σ f over a scrambled Sobol set of n points: [`sobol`] points for
+    /// [`independent`](Self::independent).
     ///
     /// # Errors
     /// If n is not from 1 to 2¹⁶, after which the sequence would repeat.

@@ -10,10 +10,12 @@ use crate::fast;
 use crate::float::Extended;
 use crate::stream::Stream;
 
-/// The law of the number of bounces N ≥ 0 of a path that goes on with probability p_rr after each: P(N = k) = p_rrᵏ (1 − p_rr).
+/// The law of the number of bounces N ≥ 0 of a path that goes on with probability p_rr after each: P(N = k) =
+/// p_rrᵏ (1 − p_rr).
 ///
-/// These are the *failures* before the first success of a coin that ends the path with probability 1 − p_rr. Some libraries call the number of
-/// *trials*, N + 1, geometric instead. At p_rr = 1 a path never ends: N is infinite, so that every P(N = k) is 0. (Worksheet 5.1 to 5.3.)
+/// These are the *failures* before the first success of a coin that ends the path with probability 1 − p_rr.
+/// Some libraries call the number of *trials*, N + 1, geometric instead. At p_rr = 1 a path never ends: N is
+/// infinite, so that every P(N = k) is 0. (Worksheet 5.1 to 5.3.)
 ///
 /// ```
 /// use unbiased::roulette::BounceCount;
@@ -68,9 +70,11 @@ impl BounceCount {
         (p / (Extended::ONE - p).squared()).round()
     }
 
-    /// The smallest k with [`cdf`](Self::cdf)(k) ≥ u, found by bisection: a logarithm's guess can be one off at a step.
+    /// The smallest k with [`cdf`](Self::cdf)(k) ≥ u, found by bisection: a logarithm's guess can be one off
+    /// at a step.
     ///
-    /// `u64::MAX` stands for infinity, the answer at u = 1 (no number of bounces is certain to be enough), and for every u > 0 at p = 1.
+    /// `u64::MAX` stands for infinity, the answer at u = 1 (no number of bounces is certain to be enough),
+    /// and for every u > 0 at p = 1.
     ///
     /// # Errors
     /// If u is not in \[0, 1\].
@@ -143,7 +147,8 @@ impl BounceCount {
 /// N by flipping coins; see [`BounceCount::by_simulation`].
 ///
 /// # The ends
-/// n bounces or more have probability pⁿ, and take n coins: without end only on a generator that is stuck below p.
+/// n bounces or more have probability pⁿ, and take n coins: without end only on a generator that is stuck
+/// below p.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BouncesBySimulation {
     p_rr: f64,
@@ -171,8 +176,8 @@ impl Estimator for BouncesBySimulation {
 /// N = ⌊ln(1 − U)/ln p⌋; see [`BounceCount::by_inversion`].
 ///
 /// # The ends
-/// U = k·2⁻⁵³ is never 1, so the tail of N ends at 53 ln 2/−ln p, beyond which its probability is below 2⁻⁵³: at 164 bounces for p = 4/5, and
-/// at 3.3e17 for p = 1 − 2⁻⁵³, drawn as fast as any.
+/// U = k·2⁻⁵³ is never 1, so the tail of N ends at 53 ln 2/−ln p, beyond which its probability is below 2⁻⁵³:
+/// at 164 bounces for p = 4/5, and at 3.3e17 for p = 1 − 2⁻⁵³, drawn as fast as any.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BouncesByInversion {
     /// 1/ln p

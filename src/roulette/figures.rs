@@ -8,7 +8,8 @@ use crate::roulette::{LightModel, Roulette};
 use crate::run::{Budget, estimate};
 use crate::stream::Stream;
 
-/// 5.1: P(N = k) for two continuation probabilities, exact as bars and measured as points with their 95 % intervals.
+/// 5.1: P(N = k) for two continuation probabilities, exact as bars and measured as points with their 95 %
+/// intervals.
 ///
 /// # Errors
 /// If a continuation probability is not in (0, 1).
@@ -74,7 +75,8 @@ pub fn bounces(p_rr: [f64; 2], draws: usize, seed: u64) -> Result<Figure> {
         name: "5_1_bounces",
         title: format!("The number of bounces at p_rr = {a} and {b}"),
         description: format!(
-            "Two bar charts of P(N = k) = pᵏ(1 − p), for p = {a} and p = {b}, falling geometrically; points with 95 % intervals are the shares of {draws} simulated rays (seed {seed})."
+            "Two bar charts of P(N = k) = pᵏ(1 − p), for p = {a} and p = {b}, falling geometrically; points \
+             with 95 % intervals are the shares of {draws} simulated rays (seed {seed})."
         ),
         edition: Edition::Solution,
         width: Width::Page,
@@ -119,7 +121,8 @@ pub fn mean_bounces(draws: u64, seed: u64) -> Result<Figure> {
         name: "5_3_mean_bounces",
         title: "E[N] grows with p_rr, without bound".into(),
         description: format!(
-            "E[N] = p/(1 − p) against p, rising from 0 slowly and then steeply towards p = 1, in a band of one standard deviation √p/(1 − p) to both sides. Points: means of {draws} draws (seed {seed})."
+            "E[N] = p/(1 − p) against p, rising from 0 slowly and then steeply towards p = 1, in a band of \
+             one standard deviation √p/(1 − p) to both sides. Points: means of {draws} draws (seed {seed})."
         ),
         edition: Edition::Solution,
         width: Width::Column,
@@ -130,7 +133,8 @@ pub fn mean_bounces(draws: u64, seed: u64) -> Result<Figure> {
     .draw()
 }
 
-/// 5.3: variance, cost and their product against the continuation probability q, with q ≤ ρ² shaded, where the variance is infinite.
+/// 5.3: variance, cost and their product against the continuation probability q, with q ≤ ρ² shaded, where
+/// the variance is infinite.
 ///
 /// # Errors
 /// If it cannot be drawn.
@@ -194,7 +198,8 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
         name: "5_3_roulette_trade",
         title: format!("What roulette costs and buys: the product is least at q* {}", equals(best, 3)),
         description: format!(
-            "Variance, cost 1/(1 − q) and their product against q, logarithmic, for ρ = {albedo} and v = {v}. The variance is infinite up to q = ρ² {}, shaded, and falls; the cost rises; the \
+            "Variance, cost 1/(1 − q) and their product against q, logarithmic, for ρ = {albedo} and v = \
+             {v}. The variance is infinite up to q = ρ² {}, shaded, and falls; the cost rises; the \
              product is least at q* {}. Marked: q = {} and q*.",
             equals(edge, 4),
             equals(best, 4),
@@ -209,7 +214,8 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
     .draw()
 }
 
-/// 5.3: the root mean square error against the number of vertices, of roulette and of paths truncated after k ≤ `max_k` and k ≤ 2 `max_k`.
+/// 5.3: the root mean square error against the number of vertices, of roulette and of paths truncated after k
+/// ≤ `max_k` and k ≤ 2 `max_k`.
 ///
 /// # Errors
 /// If q is not in (0, 1), or `max_k` is too large.
@@ -283,7 +289,9 @@ pub fn truncation(model: &LightModel, q: f64, max_k: u64, replicates: u64, seed:
         name: "5_3_truncation",
         title: "Truncated paths stop improving; roulette overtakes them".into(),
         description: format!(
-            "Root mean square error against the number of vertices C, both logarithmic, for ρ = {albedo}, v = {v}. Roulette with q = {kept} falls as 1/√C. Paths cut after k ≤ {short} and k ≤ {long} level off at \
+            "Root mean square error against the number of vertices C, both logarithmic, for ρ = {albedo}, v \
+             = {v}. Roulette with q = {kept} falls as 1/√C. Paths cut after k ≤ {short} and k ≤ {long} level \
+             off at \
              their bias; the crossings are marked. Points: {replicates} runs each, seeds from {seed}."
         ),
         edition: Edition::Solution,

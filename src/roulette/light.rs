@@ -6,12 +6,14 @@ use crate::estimator::Estimator;
 use crate::float::Extended;
 use crate::stream::Stream;
 
-/// A model of light paths: vertex k = 0, 1, … sees the light with probability v, independently of the others, and what it sees
-/// has been reflected k times with albedo ρ. The light is Σ ρᵏ v = v/(1 − ρ), dimensionless: in units of the light's radiance.
+/// A model of light paths: vertex k = 0, 1, … sees the light with probability v, independently of the others,
+/// and what it sees has been reflected k times with albedo ρ. The light is Σ ρᵏ v = v/(1 − ρ), dimensionless:
+/// in units of the light's radiance.
 ///
-/// Two rival estimators of it end the sum: [`roulette`](Self::roulette) at random, without bias, and [`truncated`](Self::truncated)
-/// after a set number of vertices, with bias but less variance. Their mean square errors at equal numbers of vertices cross
-/// at [`crossing`](Self::crossing). (Worksheet 5, "what roulette costs and buys".)
+/// Two rival estimators of it end the sum: [`roulette`](Self::roulette) at random, without bias, and
+/// [`truncated`](Self::truncated) after a set number of vertices, with bias but less variance. Their mean
+/// square errors at equal numbers of vertices cross at [`crossing`](Self::crossing). (Worksheet 5, "what
+/// roulette costs and buys".)
 ///
 /// ```
 /// use unbiased::roulette::LightModel;
@@ -61,7 +63,8 @@ impl LightModel {
     /// Paths that go on with probability q after every vertex and weigh what vertex k sees with (ρ/q)ᵏ.
     ///
     /// # Errors
-    /// If q is not in (0, 1): a path never ends at 1, and sees one vertex only at 0, which is allowed where nothing follows (ρ = 0 or v = 0).
+    /// If q is not in (0, 1): a path never ends at 1, and sees one vertex only at 0, which is allowed where
+    /// nothing follows (ρ = 0 or v = 0).
     pub fn roulette(&self, q: f64) -> Result<RoulettePaths> {
         let nothing_follows = self.albedo == 0.0 || self.visibility == 0.0;
         let ok = (q > 0.0 || q == 0.0 && nothing_follows) && q < 1.0;
@@ -81,8 +84,8 @@ impl LightModel {
     /// The q* in [ρ, 1] at which roulette's variance × cost is least.
     ///
     /// With A = v²ρ²/(1 − ρ)² and B = v(1 − v) it is the root of (B − A)q² + 2Aq − (A + Bρ²) = 0, computed as
-    /// ρ(a + b)/(aρ + √(b(a(1 − ρ²) + b))) with a = v/(1 − ρ)² and b = 1 − v: all terms are positive, A = B is no
-    /// special case, and neither are
+    /// ρ(a + b)/(aρ + √(b(a(1 − ρ²) + b))) with a = v/(1 − ρ)² and b = 1 − v: all terms are positive, A = B
+    /// is no special case, and neither are
     /// - ρ = 0: q* = 0, as only the first vertex counts;
     /// - v = 1: q* = 1, out of reach, as variance × cost = A/(q − ρ²) falls all the way to it;
     /// - v = 0: every q has no variance, and q* = ρ is the limit for v → 0.
@@ -96,8 +99,9 @@ impl LightModel {
         root.round().clamp(self.albedo, 1.0)
     }
 
-    /// The number of vertices C from which on roulette with q has a smaller mean square error than truncation after max_k:
-    /// C = (Var × cost of roulette − Var × cost of truncation)/bias². 0 if it always has (or neither has any), +∞ if it never has.
+    /// The number of vertices C from which on roulette with q has a smaller mean square error than truncation
+    /// after max_k: C = (Var × cost of roulette − Var × cost of truncation)/bias². 0 if it always has (or
+    /// neither has any), +∞ if it never has.
     ///
     /// # Errors
     /// Those of [`roulette`](Self::roulette) and [`truncated`](Self::truncated).
@@ -149,8 +153,8 @@ impl RoulettePaths {
         self.model.mean()
     }
 
-    /// The variance of one path, (A(1 − q) + Bq)/(q − ρ²) with A = v²ρ²/(1 − ρ)² and B = v(1 − v); **+∞ for q ≤ ρ²**,
-    /// where the weights grow faster than long paths get rare.
+    /// The variance of one path, (A(1 − q) + Bq)/(q − ρ²) with A = v²ρ²/(1 − ρ)² and B = v(1 − v); **+∞ for q
+    /// ≤ ρ²**, where the weights grow faster than long paths get rare.
     pub fn variance(&self) -> f64 {
         self.extended_variance().round()
     }
@@ -215,7 +219,8 @@ impl Estimator for RoulettePaths {
     }
 }
 
-/// Paths that end after a set number of vertices, a biased estimator of [`LightModel::mean`]; see [`LightModel::truncated`].
+/// Paths that end after a set number of vertices, a biased estimator of [`LightModel::mean`]; see
+/// [`LightModel::truncated`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TruncatedPaths {
     model: LightModel,

@@ -1,8 +1,8 @@
 //! Section 5: Russian roulette, which ends paths at random and loses nothing on average.
 //!
-//! X_rr = X/p_rr with probability p_rr, else 0, so E\[X_rr\] = E\[X\]. [`Roulette`] flips the coin, [`Roulette::wrap`] plays it on
-//! any estimator, [`BounceCount`] is the number N of bounces that it allows, with its laws in closed form, and [`LightModel`] says exactly
-//! what roulette costs and what it buys.
+//! X_rr = X/p_rr with probability p_rr, else 0, so E\[X_rr\] = E\[X\]. [`Roulette`] flips the coin,
+//! [`Roulette::wrap`] plays it on any estimator, [`BounceCount`] is the number N of bounces that it allows,
+//! with its laws in closed form, and [`LightModel`] says exactly what roulette costs and what it buys.
 //!
 //! One's own estimator for question 5.1 is checked by `examples/check_mine.rs`.
 
@@ -27,8 +27,8 @@ pub use light::{LightModel, RoulettePaths, TruncatedPaths};
 
 /// Russian roulette with continuation probability p_rr.
 ///
-/// It is a coin; how often it lets a path go on is [`BounceCount`]. (Worksheet 5; Arvo & Kirk, "Particle transport and image
-/// synthesis", 1990; *Physically Based Rendering*, 4th ed., section 2.2.4.)
+/// It is a coin; how often it lets a path go on is [`BounceCount`]. (Worksheet 5; Arvo & Kirk, "Particle
+/// transport and image synthesis", 1990; *Physically Based Rendering*, 4th ed., section 2.2.4.)
 ///
 /// ```
 /// use unbiased::roulette::Roulette;
@@ -96,7 +96,8 @@ impl Roulette {
 
     /// The variance of X_rr for an X with this mean μ and variance σ²: E\[X²\]/p − μ² = σ²/p + μ² (1 − p)/p.
     ///
-    /// It drops X's cost to a fraction p, but p·Var X_rr = σ² + μ² (1 − p) ≥ σ²: roulette on one X alone never lowers variance × cost.
+    /// It drops X's cost to a fraction p, but p·Var X_rr = σ² + μ² (1 − p) ≥ σ²: roulette on one X alone
+    /// never lowers variance × cost.
     ///
     /// # Errors
     /// If the mean is not finite, or the variance is negative or NaN.
@@ -118,8 +119,8 @@ const P_RR: &str = "the continuation probability p_rr";
 
 /// The estimator X_rr = X/p_rr with probability p_rr, else 0; see [`Roulette::wrap`].
 ///
-/// Its mean is X's, its variance [`Roulette::wrapped_variance`]. Where X/p_rr is beyond `f64` a draw is infinite, which ends a
-/// run with an error.
+/// Its mean is X's, its variance [`Roulette::wrapped_variance`]. Where X/p_rr is beyond `f64` a draw is
+/// infinite, which ends a run with an error.
 #[derive(Debug, Clone, Copy)]
 pub struct RussianRoulette<X> {
     roulette: Roulette,
@@ -136,8 +137,8 @@ impl<X: Estimator> Estimator for RussianRoulette<X> {
 
 /// True with probability p exactly, for any p in \[0, 1\].
 ///
-/// U < p alone would round p up to the grid k·2⁻⁵³: p = 1e-300 to 1.1e-16. So where U is the last point of the grid below p,
-/// another number decides with the part of p that lies beyond it.
+/// U < p alone would round p up to the grid k·2⁻⁵³: p = 1e-300 to 1.1e-16. So where U is the last point of
+/// the grid below p, another number decides with the part of p that lies beyond it.
 #[inline]
 pub(crate) fn coin<R: Rng + ?Sized>(rng: &mut R, mut p: f64) -> bool {
     const GRID: f64 = (1u64 << 53) as f64;

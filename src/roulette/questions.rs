@@ -57,17 +57,23 @@ pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "5.1",
         title: "Bounces at p_rr = «p_rr»",
-        statement: "With Russian roulette a ray goes on with probability p_rr at every step, and X becomes X/p_rr if it does and 0 if not. Let \
-                    p_rr = «p_rr», and N ≥ 0 the number of bounces. (i) What is P(N = 0)? (ii) What is P(N = 2)? (iii) What is E[N]?",
-        hint: "N = k means going on k times and then stopping. For E[N], count the trials up to the first stop, and then do not count the stop.",
-        formula: "P(N = k) = p_rr^k (1 − p_rr): «1 − p_rr» for k = 0, «p_rr² (1 − p_rr)» for k = 2; E[N] = p_rr/(1 − p_rr) = «p_rr/(1 − p_rr)»",
+        statement: "With Russian roulette a ray goes on with probability p_rr at every step, and X becomes \
+                    X/p_rr if it does and 0 if not. Let \
+                    p_rr = «p_rr», and N ≥ 0 the number of bounces. (i) What is P(N = 0)? (ii) What is P(N = \
+                    2)? (iii) What is E[N]?",
+        hint: "N = k means going on k times and then stopping. For E[N], count the trials up to the first \
+               stop, and then do not count the stop.",
+        formula: "P(N = k) = p_rr^k (1 − p_rr): «1 − p_rr» for k = 0, «p_rr² (1 − p_rr)» for k = 2; E[N] = \
+                  p_rr/(1 − p_rr) = «p_rr/(1 − p_rr)»",
         latex: &[
             r"P(N = k) = p_{rr}^k\,(1 - p_{rr})",
             r"P(N=0) = «1 − p_rr», \qquad P(N=2) = «p_rr»^2 \cdot «1 − p_rr» = «p_rr² (1 − p_rr)»",
             r"E[N] = \frac{1}{1 - p_{rr}} - 1 = \frac{p_{rr}}{1 - p_{rr}} = «p_rr/(1 − p_rr)»",
         ],
-        answer: "N = k takes k times going on and one stop. N + 1 counts trials up to the first stop, which has probability 1 − p_rr, so its mean is \
-                 1/(1 − p_rr) = «1/(1 − p_rr)». The division by p_rr pays for the rays that stop: E[X_rr] = p_rr · E[X]/p_rr = E[X], if the coin is independent of X. The same law is \
+        answer: "N = k takes k times going on and one stop. N + 1 counts trials up to the first stop, which \
+                 has probability 1 − p_rr, so its mean is \
+                 1/(1 − p_rr) = «1/(1 − p_rr)». The division by p_rr pays for the rays that stop: E[X_rr] = \
+                 p_rr · E[X]/p_rr = E[X], if the coin is independent of X. The same law is \
                  drawn in one step by inversion, N = ⌊ln(1 − U)/ln p_rr⌋.",
         numbers: &[
             Number {
@@ -122,7 +128,9 @@ pub(crate) const QUESTIONS: &[Question] = &[
         ],
         wrong: &[],
         on_the_original: Some(
-            "p_rr must lie in (0, 1], since p_rr = 0 loses all light, and the coin must be independent of X; the original says neither. “Geometric” counts trials there (mean 1/p), and failures in some libraries (mean 1/p − 1): look before using one.",
+            "p_rr must lie in (0, 1], since p_rr = 0 loses all light, and the coin must be independent of X; \
+             the original says neither. “Geometric” counts trials there (mean 1/p), and failures in some \
+             libraries (mean 1/p − 1): look before using one.",
         ),
         example: "q5_1_bounces",
         module: "roulette",
@@ -136,9 +144,12 @@ pub(crate) const QUESTIONS: &[Question] = &[
         hint: "The same as 5.1(iii), with another p_rr.",
         formula: "E[N] = p_rr/(1 − p_rr) = «p_rr/(1 − p_rr)»",
         latex: &[r"E[N] = \frac{1}{1 - «p_rr»} - 1 = «1/(1 − p_rr)» - 1 = «p_rr/(1 − p_rr)»"],
-        answer: "A share «1 − p_rr» of the rays stops at once. That is cheap, and it stays unbiased; but with an albedo of «ρ» every \
-                 bounce that is taken weighs ρ/p_rr = «ρ/p_rr» times as much as the one before, and where p_rr ≤ ρ² = «ρ²» \
-                 the variance is infinite: the mean of a thousand such paths is then usually too dark, its error bar too short.",
+        answer: "A share «1 − p_rr» of the rays stops at once. That is cheap, and it stays unbiased; but \
+                 with an albedo of «ρ» every \
+                 bounce that is taken weighs ρ/p_rr = «ρ/p_rr» times as much as the one before, and where \
+                 p_rr ≤ ρ² = «ρ²» \
+                 the variance is infinite: the mean of a thousand such paths is then usually too dark, its \
+                 error bar too short.",
         numbers: &[EXPECTED_BOUNCES],
         wrong: &[],
         on_the_original: None,
@@ -155,10 +166,14 @@ pub(crate) const QUESTIONS: &[Question] = &[
         formula: "E[N] = p_rr/(1 − p_rr) grows with p_rr, without bound; Var N = p_rr/(1 − p_rr)²",
         latex: &[
             r"E[N] = \frac{p_{rr}}{1-p_{rr}}, \qquad \operatorname{Var} N = \frac{p_{rr}}{(1-p_{rr})^2}",
-            r"\operatorname{Var}\hat L = \frac{A(1-q)+Bq}{q-\rho^2}\ (q > \rho^2), \quad \text{cost} = \frac1{1-q}, \quad A = \frac{v^2\rho^2}{(1-\rho)^2},\ B = v(1-v)",
+            r"\operatorname{Var}\hat L = \frac{A(1-q)+Bq}{q-\rho^2}\ (q > \rho^2), \quad \text{cost}
+              = \frac1{1-q}, \quad A = \frac{v^2\rho^2}{(1-\rho)^2},\ B = v(1-v)",
         ],
-        answer: "It grows, slowly at first and without bound as p_rr → 1, and its standard deviation is larger than it everywhere. What that buys is seen in a model: at each vertex the path \
-                 sees the light with probability v = «v», a fraction ρ = «ρ» is reflected, and q is p_rr. A larger q lowers the variance and raises the cost, and their product is least at q*, between ρ and 1. Stopping after a fixed \
+        answer: "It grows, slowly at first and without bound as p_rr → 1, and its standard deviation is \
+                 larger than it everywhere. What that buys is seen in a model: at each vertex the path \
+                 sees the light with probability v = «v», a fraction ρ = «ρ» is reflected, and q is p_rr. A \
+                 larger q lowers the variance and raises the cost, and their product is least at q*, between \
+                 ρ and 1. Stopping after a fixed \
                  number of bounces instead is biased: cheaper at first, overtaken by roulette later.",
         numbers: &[],
         wrong: &[

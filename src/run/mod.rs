@@ -1,9 +1,10 @@
 //! Running an estimator: draws in blocks, on all cores, with the same bits for any number of threads.
 //!
-//! A run of n draws is cut into blocks: 32 to 63 of them, or more where they would be larger than 2¹⁴ draws. Block b draws
-//! from [`Stream::new`]`(seed, b)` and the blocks' estimates are merged along a fixed binary tree over b, so neither the number of
-//! threads nor their timing can be seen in the result, nor whether it was made in one piece or put together from [shards](Run::shard)
-//! of several machines. Memory does not grow with the number of draws.
+//! A run of n draws is cut into blocks: 32 to 63 of them, or more where they would be larger than 2¹⁴ draws.
+//! Block b draws from [`Stream::new`]`(seed, b)` and the blocks' estimates are merged along a fixed binary
+//! tree over b, so neither the number of threads nor their timing can be seen in the result, nor whether it
+//! was made in one piece or put together from [shards](Run::shard) of several machines. Memory does not grow
+//! with the number of draws.
 
 use std::fmt;
 use std::ops::Range;
@@ -28,19 +29,21 @@ pub use part::{Part, merge};
 pub enum Budget {
     /// After this many draws.
     Draws(u64),
-    /// After the draws that, by a pilot run's variance, bring the std error to this, but never fewer than the pilot's: some
-    /// 10⁶, or as many as take 2²⁴ random numbers or evaluations. The pilot has a stream of its own and is discarded, so the
-    /// result stays exactly unbiased.
+    /// After the draws that, by a pilot run's variance, bring the std error to this, but never fewer than the
+    /// pilot's: some 10⁶, or as many as take 2²⁴ random numbers or evaluations. The pilot has a stream of its
+    /// own and is discarded, so the result stays exactly unbiased.
     StdError(f64),
     /// The same for the std error divided by the mean.
     RelativeError(f64),
-    /// After the draws that this time has room for, by the pace of a pilot run that takes a tenth of it, but never fewer than
-    /// two. To stop by the clock itself would favour draws that are soon made, and their values with them (Glynn &
-    /// Heidelberger 1990). The number of draws depends on the machine; `Draws` with that number repeats the result.
+    /// After the draws that this time has room for, by the pace of a pilot run that takes a tenth of it, but
+    /// never fewer than two. To stop by the clock itself would favour draws that are soon made, and their
+    /// values with them (Glynn & Heidelberger 1990). The number of draws depends on the machine; `Draws` with
+    /// that number repeats the result.
     Time(Duration),
 }
 
-/// The estimate after `budget`, on all cores. The same budget of draws and seed give the same bits for any number of threads.
+/// The estimate after `budget`, on all cores. The same budget of draws and seed give the same bits for any
+/// number of threads.
 ///
 /// [`Run`] takes more options and tells more.
 ///
@@ -104,10 +107,11 @@ impl fmt::Display for Shortfall {
 }
 
 impl Outcome {
-    /// Whether the pilot run never varied, so that there was nothing to fix the number of draws by: either the estimator has
-    /// no variance, or the pilot missed all of it. A value that a draw takes with probability p is missed by n draws with
-    /// probability (1 − p)ⁿ: below 1e-12 for p ≥ 27.6/n, which is 1.7e-6 for the 2²⁴ draws after which a pilot of cheap
-    /// draws gives up. The run then takes 2²⁰ draws, or the pilot's where it had fewer.
+    /// Whether the pilot run never varied, so that there was nothing to fix the number of draws by: either
+    /// the estimator has no variance, or the pilot missed all of it. A value that a draw takes with
+    /// probability p is missed by n draws with probability (1 − p)ⁿ: below 1e-12 for p ≥ 27.6/n, which is
+    /// 1.7e-6 for the 2²⁴ draws after which a pilot of cheap draws gives up. The run then takes 2²⁰ draws, or
+    /// the pilot's where it had fewer.
     pub fn pilot_never_varied(&self) -> bool {
         self.pilot.is_some_and(|pilot| pilot.std_error() == Some(0.0))
     }
@@ -165,10 +169,11 @@ impl<'a> Run<'a> {
         self
     }
 
-    /// Where the budget names an error, takes no more draws than this time allows by the pilot run's pace, though never fewer
-    /// than the pilot, which itself doubles no more once a quarter of the time is over. An error out of reach is then no [`Error::Budget`]:
-    /// the estimate comes with a [`Shortfall`]. The number of its draws depends on the machine, but not on their values, so it
-    /// stays unbiased; `Budget::Draws` with that number repeats it.
+    /// Where the budget names an error, takes no more draws than this time allows by the pilot run's pace,
+    /// though never fewer than the pilot, which itself doubles no more once a quarter of the time is over. An
+    /// error out of reach is then no [`Error::Budget`]: the estimate comes with a [`Shortfall`]. The number
+    /// of its draws depends on the machine, but not on their values, so it stays unbiased; `Budget::Draws`
+    /// with that number repeats it.
     ///
     /// ```
     /// use std::time::Duration;
@@ -197,8 +202,9 @@ impl<'a> Run<'a> {
         self
     }
 
-    /// Takes only shard k of `of` of the run: of as many neighbouring blocks as the others. Its outcome has a [`Part`]; [`merge`] makes the
-    /// whole run's outcome of all parts, with the bits that it has in one piece.
+    /// Takes only shard k of `of` of the run: of as many neighbouring blocks as the others. Its outcome has a
+    /// [`Part`]; [`merge`] makes the whole run's outcome of all parts, with the bits that it has in one
+    /// piece.
     pub fn shard(mut self, k: u64, of: u64) -> Self {
         self.shard = Some([k, of]);
         self
@@ -207,8 +213,9 @@ impl<'a> Run<'a> {
     /// Runs `estimator` until `budget` is spent.
     ///
     /// # Errors
-    /// If a shard is not one of 1 to the number of shards, or is asked for with a budget that is not one of draws; if the budget is empty or out of reach, the threads cannot be started, a draw is NaN or infinite, or a time is to be
-    /// kept by a clock that stands still or goes back.
+    /// If a shard is not one of 1 to the number of shards, or is asked for with a budget that is not one of
+    /// draws; if the budget is empty or out of reach, the threads cannot be started, a draw is NaN or
+    /// infinite, or a time is to be kept by a clock that stands still or goes back.
     pub fn estimate(&self, estimator: &(impl Estimator + ?Sized), budget: Budget) -> Result<Outcome> {
         let watch = Watch::start(self.clock);
         if let Some([k, of]) = self.shard {
@@ -296,8 +303,9 @@ impl<'a> Run<'a> {
         Ok(blocks)
     }
 
-    /// How many draws `time` has room for, by the pace at which all threads draw from streams of their own for a tenth of it.
-    /// Those draws are discarded: what decides on the number says nothing of the values that count.
+    /// How many draws `time` has room for, by the pace at which all threads draw from streams of their own
+    /// for a tenth of it. Those draws are discarded: what decides on the number says nothing of the values
+    /// that count.
     fn draws_in<E: Estimator + ?Sized>(
         &self,
         work: &mut Work<'_, E>,
@@ -324,8 +332,8 @@ impl<'a> Run<'a> {
         Ok(((draws_per_second * left) as u64).max(2))
     }
 
-    /// Draws from streams of their own until mean and std error are `enough`, doubling up to the limit on draws; without any
-    /// variance only up to [`STILL`].
+    /// Draws from streams of their own until mean and std error are `enough`, doubling up to the limit on
+    /// draws; without any variance only up to [`STILL`].
     fn pilot<E: Estimator + ?Sized>(
         &self,
         work: &mut Work<'_, E>,
@@ -351,10 +359,12 @@ impl<'a> Run<'a> {
         Ok(pilot)
     }
 
-    /// The draws to take for a std error of `target`, by the pilot's variance, and what is missing where time is short.
+    /// The draws to take for a std error of `target`, by the pilot's variance, and what is missing where time
+    /// is short.
     fn needed(&self, pilot: &Estimate, watch: &Watch<'_>, target: f64) -> Result<(u64, Option<Shortfall>)> {
         let reached = pilot.std_error().unwrap_or(0.0);
-        // with fewer draws than the pilot's, what the pilot saw may be missing: the error bar would say less than is known
+        // with fewer draws than the pilot's, what the pilot saw may be missing: the error bar would say less
+        // than is known
         let fewest = pilot.draws();
         if reached == 0.0 {
             return Ok((fewest.min(LONG), None));
@@ -406,8 +416,9 @@ const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 /// Draws that a pilot run begins with.
 const FIRST_STAGE: u64 = 64;
 
-/// Draws of a pilot run where they are cheap: its std error is known to a part in a thousand, if the fourth moment is that of a
-/// normal law. A draw of more than 16 random numbers or evaluations counts for more than one.
+/// Draws of a pilot run where they are cheap: its std error is known to a part in a thousand, if the fourth
+/// moment is that of a normal law. A draw of more than 16 random numbers or evaluations counts for more than
+/// one.
 const LONG: u64 = 1 << 20;
 
 /// Draws after which a pilot run that has not varied is taken to have no variance.
@@ -457,7 +468,8 @@ impl<E: Estimator + ?Sized> Work<'_, E> {
     }
 }
 
-/// Draws in each block of a run of `draws`: a power of two, so that runs of about as many draws share their streams.
+/// Draws in each block of a run of `draws`: a power of two, so that runs of about as many draws share their
+/// streams.
 fn block_size(draws: u64) -> u64 {
     let size = (draws / BLOCKS).clamp(1, LARGEST_BLOCK);
     1 << size.ilog2()
@@ -497,7 +509,8 @@ impl<'a> Watch<'a> {
     }
 }
 
-/// Draws that a clock has to move in: a microsecond or more, and some milliseconds where draws are no cheaper than most.
+/// Draws that a clock has to move in: a microsecond or more, and some milliseconds where draws are no cheaper
+/// than most.
 const TICKLESS: u64 = 1 << 16;
 
 /// Draws a second of one of the threads, which began at the first of two times, up to the second.

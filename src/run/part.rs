@@ -8,7 +8,8 @@ use super::{Cost, Outcome, block_size};
 use crate::error::{Error, Result};
 use crate::estimate::Estimate;
 
-/// One shard of a run: what its blocks gave, to the last bit, so that [`merge`] can make the whole run of all its shards, wherever they ran.
+/// One shard of a run: what its blocks gave, to the last bit, so that [`merge`] can make the whole run of all
+/// its shards, wherever they ran.
 ///
 /// As JSON it is small: some numbers, and at most two estimates for each doubling of the number of blocks.
 ///
@@ -38,13 +39,14 @@ impl Part {
     }
 }
 
-/// Puts a run together from all of its shards, in any order: the estimate has the bits of a run that was never cut.
+/// Puts a run together from all of its shards, in any order: the estimate has the bits of a run that was
+/// never cut.
 ///
 /// The cost and the time are the sums of theirs.
 ///
 /// # Errors
-/// If the shards are of runs with other seeds or numbers of draws, one is missing, or one is there twice. Whether they are of the
-/// same estimator only their files' names can tell.
+/// If the shards are of runs with other seeds or numbers of draws, one is missing, or one is there twice.
+/// Whether they are of the same estimator only their files' names can tell.
 pub fn merge(parts: &[Part]) -> Result<Outcome> {
     let refused = |reason: String| Err(Error::Parts { reason });
     let Some(Part { seed, draws, .. }) = parts.first() else {
@@ -81,8 +83,9 @@ pub fn merge(parts: &[Part]) -> Result<Outcome> {
     Ok(Outcome { estimate, seed: *seed, cost, elapsed, pilot: None, shortfall: None, part: None })
 }
 
-/// Neighbouring blocks, as few estimates as a binary tree over all block numbers has for them: node j of level l holds blocks
-/// j·2ˡ to (j + 1)·2ˡ − 1, merged from its two halves. So the sums of a run have the same roundings, however its blocks are cut into shards.
+/// Neighbouring blocks, as few estimates as a binary tree over all block numbers has for them: node j of
+/// level l holds blocks j·2ˡ to (j + 1)·2ˡ − 1, merged from its two halves. So the sums of a run have the
+/// same roundings, however its blocks are cut into shards.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Blocks {
     first: u64,

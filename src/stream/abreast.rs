@@ -49,7 +49,8 @@ pub(crate) struct Abreast<'a> {
     first: u64,
     count: usize,
     stride: usize,
-    /// The draw of each lane, counted from the first, how many have one, and how many numbers the lane had given before it.
+    /// The draw of each lane, counted from the first, how many have one, and how many numbers the lane had
+    /// given before it.
     places: [Option<usize>; LANES],
     under_way: usize,
     before: [u64; LANES],

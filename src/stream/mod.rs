@@ -1,8 +1,8 @@
 //! Where random numbers come from: one numbering of them by (seed, block, draw).
 //!
-//! A block of a run has 32 generators. Draw i of the block takes its numbers from generator i mod 32, after the numbers
-//! of the draws before it there. So a draw's numbers do not depend on how draws are computed: one at a time in any order of
-//! the generators, or 32 side by side in the lanes of vectors.
+//! A block of a run has 32 generators. Draw i of the block takes its numbers from generator i mod 32, after
+//! the numbers of the draws before it there. So a draw's numbers do not depend on how draws are computed: one
+//! at a time in any order of the generators, or 32 side by side in the lanes of vectors.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -24,12 +24,14 @@ pub(crate) use word::{GRID, LANES, mix};
 
 /// A stream of random numbers: those of one block of a run, draw by draw.
 ///
-/// The generators are Xoshiro256++ (Blackman & Vigna 2019), started from (seed, block, place). The same triple gives the same
-/// numbers on every machine and in every release that does not say otherwise in the changelog. Seed, block and place are
-/// hashed together into the 256 bits of a generator's state, so neighbouring ones share nothing.
+/// The generators are Xoshiro256++ (Blackman & Vigna 2019), started from (seed, block, place). The same
+/// triple gives the same numbers on every machine and in every release that does not say otherwise in the
+/// changelog. Seed, block and place are hashed together into the 256 bits of a generator's state, so
+/// neighbouring ones share nothing.
 ///
-/// It is an ordinary [`rand::Rng`], so every distribution of rand's can draw from it, and it counts
-/// what it gave, so that an estimator's cost is known. It gives the numbers of one draw until [`next_draw`](Self::next_draw).
+/// It is an ordinary [`rand::Rng`], so every distribution of rand's can draw from it, and it counts what it
+/// gave, so that an estimator's cost is known. It gives the numbers of one draw until
+/// [`next_draw`](Self::next_draw).
 ///
 /// ```
 /// use unbiased::Stream;
@@ -45,7 +47,8 @@ pub struct Stream {
     source: Source,
     seed: u64,
     block: u64,
-    /// The generator of the current draw, and all of them if another was ever needed; there its own place is out of date.
+    /// The generator of the current draw, and all of them if another was ever needed; there its own place is
+    /// out of date.
     one: Xoshiro,
     lanes: Option<Box<Lanes>>,
     /// The current draw, and the numbers that were given before it.
@@ -78,8 +81,8 @@ impl Stream {
         Self { source: Source::Placed(placement), ..Self::new(seed, 0) }
     }
 
-    /// A stream that gives these uniform numbers, each rounded down to the grid of 2⁻⁵³ and kept in [0, 1), and then 0 for ever: it makes of an estimator a
-    /// function on the unit cube.
+    /// A stream that gives these uniform numbers, each rounded down to the grid of 2⁻⁵³ and kept in [0, 1),
+    /// and then 0 for ever: it makes of an estimator a function on the unit cube.
     ///
     /// ```
     /// let mut rng = unbiased::Stream::scripted(&[0.25, 0.75]);
@@ -118,7 +121,8 @@ impl Stream {
         word
     }
 
-    /// Goes on to the numbers of the next draw; [`Estimator::fill`](crate::Estimator::fill) does so after each of its draws.
+    /// Goes on to the numbers of the next draw; [`Estimator::fill`](crate::Estimator::fill) does so after
+    /// each of its draws.
     ///
     /// ```
     /// use unbiased::{Estimator, Stream, from_uniforms};
@@ -148,7 +152,8 @@ impl Stream {
         (self.draw, self.before) = (draw, self.random_numbers);
     }
 
-    /// Fills `draws` with what `draw` makes of the numbers of each: a generator after the other, each of which then stays in registers.
+    /// Fills `draws` with what `draw` makes of the numbers of each: a generator after the other, each of
+    /// which then stays in registers.
     #[inline]
     pub(crate) fn one_at_a_time(&mut self, draws: &mut [f64], draw: impl Fn(&mut Self) -> f64) {
         match self.source {
@@ -179,7 +184,8 @@ impl Stream {
         self.lanes.get_or_insert_with(|| Box::new(Lanes::new(self.seed, self.block)))
     }
 
-    /// The next word of a source that few streams have: out of the way, so that a draw stays short enough to be inlined.
+    /// The next word of a source that few streams have: out of the way, so that a draw stays short enough to
+    /// be inlined.
     #[inline(never)]
     fn elsewhere(&mut self, index: u64) -> u64 {
         match &self.source {
@@ -196,9 +202,10 @@ impl Stream {
         if let Source::Script(_) = self.source { 0 } else { self.draw as usize % LANES }
     }
 
-    /// Gives each of the next `draws` draws its first `each` numbers, and goes on to the draw after them. There are `each` times as many
-    /// rows as 32 draws take, which are at most `sets`: number k of a draw is in row k·sets and those after it, in the place of its
-    /// generator; what lies before the first draw or after the last stays.
+    /// Gives each of the next `draws` draws its first `each` numbers, and goes on to the draw after them.
+    /// There are `each` times as many rows as 32 draws take, which are at most `sets`: number k of a draw is
+    /// in row k·sets and those after it, in the place of its generator; what lies before the first draw or
+    /// after the last stays.
     pub(crate) fn fill_rows<T: Real>(
         &mut self,
         each: usize,

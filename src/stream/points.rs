@@ -44,7 +44,8 @@ impl Sobol {
         Self { digits: points.next_power_of_two().trailing_zeros(), seed }
     }
 
-    /// Bits of its own for every coordinate: one 32-bit seed for all, as `sobol_burley::sample` takes, knows only 2³² replicates.
+    /// Bits of its own for every coordinate: one 32-bit seed for all, as `sobol_burley::sample` takes, knows
+    /// only 2³² replicates.
     #[inline]
     fn scramble(&self, dimension: u64) -> u32 {
         (hash(self.seed, dimension) >> 32) as u32
@@ -60,7 +61,8 @@ impl Sobol {
         u64::from(owen_scramble_rev(sobol_rev, scramble).reverse_bits()) << 32 & !below | word & below
     }
 
-    /// Where the first `each` numbers of points belong, from `first`, a multiple of [`LANES`], on: of so many sets of as many neighbours.
+    /// Where the first `each` numbers of points belong, from `first`, a multiple of [`LANES`], on: of so many
+    /// sets of as many neighbours.
     pub fn rows(self, first: u64, each: usize, sets: usize) -> SobolRows {
         let placed = (0..NUM_DIMENSIONS).take(each);
         let firsts = (first..).step_by(LANES).take(sets);
@@ -104,7 +106,8 @@ fn reversed(point: u64) -> u32 {
     (point as u32).reverse_bits()
 }
 
-/// The first 32 points of the sequence, by coordinate: point 32k + l is that of 32k and that of l, added digit by digit without a carry.
+/// The first 32 points of the sequence, by coordinate: point 32k + l is that of 32k and that of l, added
+/// digit by digit without a carry.
 static LOWEST: LazyLock<Vec<[u32; LANES]>> = LazyLock::new(|| {
     let points = |dimension| std::array::from_fn(|point| sobol_rev(reversed(point as u64), dimension));
     (0..NUM_DIMENSIONS).map(points).collect()
@@ -149,8 +152,8 @@ impl Grid {
     }
 }
 
-/// A permutation of 0 … n − 1, another one for each key: bijections of the numbers below a power of two, until it is below n
-/// (Kensler 2013, "Correlated multi-jittered sampling").
+/// A permutation of 0 … n − 1, another one for each key: bijections of the numbers below a power of two,
+/// until it is below n (Kensler 2013, "Correlated multi-jittered sampling").
 fn permuted(mut i: u32, n: u32, key: u32) -> u32 {
     let mask = n.next_power_of_two() - 1;
     loop {

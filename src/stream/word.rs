@@ -1,6 +1,7 @@
 //! Random words: how they are mixed, and the uniform numbers that they stand for.
 
-/// Generators of a block: as many as fill the widest vectors four times, since the steps of one draw depend on each other.
+/// Generators of a block: as many as fill the widest vectors four times, since the steps of one draw depend
+/// on each other.
 pub(crate) const LANES: usize = 32;
 
 /// Points of the grid of uniform numbers.
@@ -8,8 +9,8 @@ pub const GRID: f64 = (1u64 << 53) as f64;
 
 /// The upper 53 bits as a number in [0, 1).
 ///
-/// The upper and the lower half become numbers by their bits: a conversion of one integer to `f64` waits on x86 for what its register held
-/// before, which is often the draw before.
+/// The upper and the lower half become numbers by their bits: a conversion of one integer to `f64` waits on
+/// x86 for what its register held before, which is often the draw before.
 #[inline(always)]
 pub(crate) fn on_the_grid(bits: u64) -> f64 {
     const UPPER: f64 = 19_342_813_113_834_066_795_298_816.0; // 2⁸⁴: its last place is 2³²
@@ -22,7 +23,8 @@ pub(crate) fn on_the_grid(bits: u64) -> f64 {
 /// 2⁶⁴/φ, the increment of SplitMix64.
 pub(crate) const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// SplitMix64's finaliser (Stafford's mix 13): a bijection in which every input bit moves half of the output's.
+/// SplitMix64's finaliser (Stafford's mix 13): a bijection in which every input bit moves half of the
+/// output's.
 pub(crate) const fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

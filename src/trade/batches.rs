@@ -11,7 +11,8 @@ use crate::run::{Cost, walk_block};
 /// Batches a rival: one is the median of their times, and two are its quartiles.
 pub(super) const COUNT: u64 = 17;
 
-/// The time of this many batches goes into warming up: 1 + ½ + ¼ + … of one for finding its length, and three for making sure of it.
+/// The time of this many batches goes into warming up: 1 + ½ + ¼ + … of one for finding its length, and three
+/// for making sure of it.
 const WARM: u64 = 4;
 
 /// Draws a batch: two have a variance.
@@ -34,7 +35,8 @@ struct Batch {
 const LOOKS: u64 = 256;
 
 impl Batch {
-    /// The time of a draw is the median of up to 256 pieces of the batch, each so short that hardly one is interrupted by what else the machine does.
+    /// The time of a draw is the median of up to 256 pieces of the batch, each so short that hardly one is
+    /// interrupted by what else the machine does.
     fn take(estimator: &dyn Estimator, seed: u64, block: u64, draws: u64) -> Result<Self> {
         let (mut estimate, mut least, mut most) = (Estimate::new(), f64::INFINITY, f64::NEG_INFINITY);
         let piece = draws.div_ceil(SLICE as u64).div_ceil(LOOKS) * SLICE as u64;
@@ -117,7 +119,8 @@ impl Batches {
 
 /// How many draws take `aim` seconds, by a clock that says how long so many take.
 ///
-/// The batch that decides may have been interrupted, which would make all batches too short: it is repeated twice, and the shortest counts.
+/// The batch that decides may have been interrupted, which would make all batches too short: it is repeated
+/// twice, and the shortest counts.
 fn draws_that_take(aim: f64, mut time: impl FnMut(u64) -> Result<f64>) -> Result<u64> {
     let mut draws = FEWEST;
     loop {
@@ -138,12 +141,16 @@ fn draws_that_take(aim: f64, mut time: impl FnMut(u64) -> Result<f64>) -> Result
 /// The probability of calling draws heavy whose tails are those of an exponential.
 const FALSE_ALARM: f64 = 1e-3;
 
-/// Whether the draw that lies `furthest` from the mean holds more of the sum of squares Σ (X − X̄)² than it would if the fourth moment were finite.
+/// Whether the draw that lies `furthest` from the mean holds more of the sum of squares Σ (X − X̄)² than it
+/// would if the fourth moment were finite.
 ///
-/// The share of the largest of n squares falls like 1/n but for a slowly growing factor. Two bounds, of which the larger counts:
-/// - ln²(n/p)/n, where the tails are no heavier than an exponential's: P(|X − μ| > xσ) ≤ e^(−x), so the largest of n lies beyond ln(n/p) σ with probability p at most;
-/// - 1/√n, where they fall like a power. If E\[X⁴\] is finite, n P((X − μ)² > σ²√n) → 0, so the share ends up below; if P(|X| > x) falls like x^(−α) with α < 4, the share
-///   falls like n^(2/α − 1), or not at all from α = 2 down, and ends up above.
+/// The share of the largest of n squares falls like 1/n but for a slowly growing factor. Two bounds, of which
+/// the larger counts:
+/// - ln²(n/p)/n, where the tails are no heavier than an exponential's: P(|X − μ| > xσ) ≤ e^(−x), so the
+///   largest of n lies beyond ln(n/p) σ with probability p at most;
+/// - 1/√n, where they fall like a power. If E\[X⁴\] is finite, n P((X − μ)² > σ²√n) → 0, so the share ends up
+///   below; if P(|X| > x) falls like x^(−α) with α < 4, the share falls like n^(2/α − 1), or not at all from
+///   α = 2 down, and ends up above.
 ///
 /// Below 132 draws the first is more than 1: nothing is seen.
 fn is_heavy(furthest: f64, all: &Estimate) -> bool {
@@ -226,7 +233,8 @@ mod tests {
         assert_eq!(draws_that_take(1e-3, |_| Ok(0.0)).unwrap(), MOST);
     }
 
-    /// Draws that take 2 µs or more, in pieces and in less than one: no median is more than twice the mean, and two of three thousand draws' three pieces are whole.
+    /// Draws that take 2 µs or more, in pieces and in less than one: no median is more than twice the mean,
+    /// and two of three thousand draws' three pieces are whole.
     #[test]
     fn the_time_of_a_draw_is_that_of_one() {
         let slow = from_fn(|rng| {
@@ -289,7 +297,8 @@ mod tests {
         (0..tries).filter(|block| heavy(*block)).count() as u64
     }
 
-    /// Of draws with an exponential's tail one set in a thousand may be marked: more than 19 of 2,000 are with probability 1e-13. A threshold of 2 % marks all of them.
+    /// Of draws with an exponential's tail one set in a thousand may be marked: more than 19 of 2,000 are
+    /// with probability 1e-13. A threshold of 2 % marks all of them.
     #[test]
     fn light_tails_are_not_marked() {
         let room = BoxRoom::new(Scene::default()).unwrap();
@@ -312,9 +321,10 @@ mod tests {
         assert_eq!(alarms(1, 200, &lonely), 1);
     }
 
-    /// At 16,384 draws a tail P(X > x) ~ x⁻² is missed once in some 400 sets, so more than 5 of 50 are with probability 4e-9; heavier ones are missed less often. At 1,024 draws two
-    /// thirds are found, of 1/x (α = 1) 98 in a hundred. An average of 64² pairs has its tail behind a near-normal bulk: 1/r by all pairs is found once in 40 sets of 1,024, 15 times of 16,384,
-    /// and always of 262,144.
+    /// At 16,384 draws a tail P(X > x) ~ x⁻² is missed once in some 400 sets, so more than 5 of 50 are with
+    /// probability 4e-9; heavier ones are missed less often. At 1,024 draws two thirds are found, of 1/x, where
+    /// α = 1, 98 in a hundred. An average of 64² pairs has its tail behind a near-normal bulk: 1/r by all pairs
+    /// is found once in 40 sets of 1,024, 15 times of 16,384, and always of 262,144.
     #[test]
     fn infinite_variances_are_marked() {
         let square = Rectangle::WORKSHEET;

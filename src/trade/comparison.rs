@@ -5,7 +5,8 @@ use super::measured::{Crossing, Measured, Nature};
 
 /// What a comparison found.
 ///
-/// `{}` shows it as a table for people, [`csv`](Self::csv) and serde (as JSON, say) give the same for programs, and `figure::trade` draws it.
+/// `{}` shows it as a table for people, [`csv`](Self::csv) and serde (as JSON, say) give the same for
+/// programs, and `figure::trade` draws it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     /// The seed of all draws.
@@ -25,17 +26,21 @@ pub struct Place<'a> {
     pub rival: &'a Measured,
     /// 1 + the number of rivals that are really better. Those of rank 1 are not told apart from the best.
     pub rank: usize,
-    /// Its efficiency as a part of the best one's; where both have no variance, the best one's time as a part of its own.
+    /// Its efficiency as a part of the best one's; where both have no variance, the best one's time as a part
+    /// of its own.
     pub of_the_best: f64,
     /// Whether the one before is really better; true of the first.
     pub set_apart: bool,
 }
 
 impl Comparison {
-    /// The rivals without bias by their efficiency 1/(σ² t), the best first: those without variance by their time, and those of infinite variance last.
+    /// The rivals without bias by their efficiency 1/(σ² t), the best first: those without variance by their
+    /// time, and those of infinite variance last.
     ///
-    /// One is *really better* than another if ln(efficiency) differs by more than three of the difference's std errors, which are √(δσ²² + δt²) with the relative std errors of either's variance (by
-    /// the spread of the batches' variances) and time (of the median, by the quartiles). One with a heavy tail is never really better, for its variance may be larger than it looks.
+    /// One is *really better* than another if ln(efficiency) differs by more than three of the difference's
+    /// std errors, which are √(δσ²² + δt²) with the relative std errors of either's variance (by the spread
+    /// of the batches' variances) and time (of the median, by the quartiles). One with a heavy tail is never
+    /// really better, for its variance may be larger than it looks.
     ///
     /// ```
     /// use unbiased::from_fn;
@@ -43,7 +48,8 @@ impl Comparison {
     ///
     /// let one = Rival::new("one", from_fn(|rng| rng.uniform()));
     /// let same = Rival::new("the same", from_fn(|rng| rng.uniform()));
-    /// let late = Rival::new("a hundred, one of them used", from_fn(|rng| (0..100).map(|_| rng.uniform()).fold(0.0, |_, u| u)));
+    /// let last = from_fn(|rng| (0..100).map(|_| rng.uniform()).fold(0.0, |_, u| u));
+    /// let late = Rival::new("a hundred, one of them used", last);
     /// let found = Trade::new(1, 0.5)?.seconds_each(0.02)?.compare(&[one, same, late])?;
     /// let ranking = found.ranking();
     /// assert_eq!(ranking[0].rank, 1);
@@ -73,8 +79,9 @@ impl Comparison {
         places
     }
 
-    /// The slope of a rival's error against the points that it takes, ½ Δln σ²/Δln points, from that of its series that takes the fewest: −½ is what independent points
-    /// have. None of that one itself, of one in no series, and without a variance that is finite and more than rounding.
+    /// The slope of a rival's error against the points that it takes, ½ Δln σ²/Δln points, from that of its
+    /// series that takes the fewest: −½ is what independent points have. None of that one itself, of one in
+    /// no series, and without a variance that is finite and more than rounding.
     pub fn slope(&self, rival: &Measured) -> Option<f64> {
         let ok = |one: &Measured| one.varies() && one.variance().is_finite() && one.evaluations > 0.0;
         let siblings = self.rivals.iter().filter(|other| other.series == rival.series && ok(other));

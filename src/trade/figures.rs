@@ -34,23 +34,28 @@ const SPAN: f64 = 9e4;
 /// A rival with how it is drawn.
 type Drawn<'a> = (&'a Measured, (Ink, Marker));
 
-/// The root mean square errors √(β² + σ² t/T) of the rivals against draws, against counted work and against seconds, and their efficiencies 1/(σ² t), which name the lines. An arrow in the panel of
-/// seconds spans the factor between the slowest and the fastest at the same error, where that difference is real and at least 2.
+/// The root mean square errors √(β² + σ² t/T) of the rivals against draws, against counted work and against
+/// seconds, and their efficiencies 1/(σ² t), which name the lines. An arrow in the panel of seconds spans the
+/// factor between the slowest and the fastest at the same error, where that difference is real and at least
+/// 2.
 ///
-/// Work is evaluations where every rival counts them, else random numbers. What has no line, such as an infinite variance, is named all the same; where a bias is not seen, the line
-/// ends at the error down to which it is known. Sixteen rivals can be drawn: the description names those left out. `name` is the file's, `title` says what is compared.
+/// Work is evaluations where every rival counts them, else random numbers. What has no line, such as an
+/// infinite variance, is named all the same; where a bias is not seen, the line ends at the error down to
+/// which it is known. Sixteen rivals can be drawn: the description names those left out. `name` is the
+/// file's, `title` says what is compared.
 ///
 /// # Errors
 /// If it cannot be drawn.
 ///
 /// ```
-/// use unbiased::trade::{Rival, Trade};
-/// use unbiased::{figure, from_fn};
+/// use unbiased::from_fn;
+/// use unbiased::trade::{Rival, Trade, figures};
 ///
 /// let one = from_fn(|rng| rng.uniform().sqrt());
 /// let two = from_fn(|rng| 0.5 * (rng.uniform().sqrt() + rng.uniform().sqrt()));
-/// let found = Trade::new(1, 2.0 / 3.0)?.seconds_each(0.01)?.compare(&[Rival::new("one", one), Rival::new("two", two)])?;
-/// let figure = trade::figures::trade("trade_mine", "One point or two", &found)?;
+/// let rivals = [Rival::new("one", one), Rival::new("two", two)];
+/// let found = Trade::new(1, 2.0 / 3.0)?.seconds_each(0.01)?.compare(&rivals)?;
+/// let figure = figures::comparison("trade_mine", "One point or two", &found)?;
 /// assert!(figure.svg().starts_with("<svg"));
 /// # Ok::<(), unbiased::Error>(())
 /// ```
@@ -91,9 +96,14 @@ pub fn comparison(name: &'static str, title: &str, comparison: &Comparison) -> R
         name,
         title: title.into(),
         description: format!(
-            "Root mean square error{} against draws, counted work and seconds, all axes logarithmic, and the efficiency as a part of the best one's, for {names}.{left_out} The lines follow from the variance, \
-             bias, work and time of a draw as they were measured (seed {}); a line ends where a bias that is not seen may take over. An arrow spans the factor in time between the slowest and the fastest without bias \
-             at the same error, if the difference is more than three std errors, and at least a factor of 2. What has no variance, or an infinite one, has no line.",
+            "Root mean square error{} against draws, counted work and seconds, all axes logarithmic, and the \
+             efficiency as a part of the best one's, for {names}.{left_out} The lines follow from the \
+             variance, \
+             bias, work and time of a draw as they were measured (seed {}); a line ends where a bias that is \
+             not seen may take over. An arrow spans the factor in time between the slowest and the fastest \
+             without bias \
+             at the same error, if the difference is more than three std errors, and at least a factor of 2. \
+             What has no variance, or an infinite one, has no line.",
             if comparison.truth == 0.0 { "" } else { " relative to the truth" },
             comparison.seed
         ),
@@ -106,7 +116,8 @@ pub fn comparison(name: &'static str, title: &str, comparison: &Comparison) -> R
     .draw()
 }
 
-/// The error after so much of `cost`, relative to the truth; NaN where a bias that is not seen may be as large.
+/// The error after so much of `cost`, relative to the truth; NaN where a bias that is not seen may be as
+/// large.
 fn error(rival: &Measured, cost: &dyn Fn(&Measured) -> f64, spent: f64) -> f64 {
     let error = rival.rmse(rival.seconds * spent / cost(rival));
     let known = if rival.bias_seen() { 0.0 } else { rival.bias().abs() + 3.0 * rival.bias_error() };
@@ -131,7 +142,8 @@ fn panel([heading, unit, axis]: [&str; 3], lines: &[Drawn<'_>], cost: &dyn Fn(&M
     let mut panel = Panel::new(heading, Axis::log(unit, low, high), Axis::log(axis, bottom, top));
     for (index, (rival, (ink, marker))) in lines.iter().enumerate() {
         panel.curve(&rival.name, *ink, |spent| error(rival, cost, spent));
-        // a marker every power of ten, each rival's a little further, so that lines on top of each other show all of them
+        // a marker every power of ten, each rival's a little further, so that lines on top of each other show
+        // all of them
         let first = 0.2 + 0.8 * (index as f64 + 0.5) / lines.len() as f64;
         let marked = (0..5).map(|power| low * 10f64.powf(f64::from(power) + first));
         let points: Vec<_> = marked
@@ -172,7 +184,8 @@ fn speed_up(panel: &mut Panel, comparison: &Comparison) {
     panel.text(Ink::Black, [(at * from).sqrt(), error], Side::Above, &text);
 }
 
-/// Efficiency as a part of the best one's, a row a rival, each with its line and marker: what names the lines.
+/// Efficiency as a part of the best one's, a row a rival, each with its line and marker: what names the
+/// lines.
 fn efficiencies(drawn: &[Drawn<'_>], comparison: &Comparison) -> Panel {
     let ranking = comparison.ranking();
     let best =

@@ -68,7 +68,8 @@ pub enum Crossing {
     Unknown,
 }
 
-/// What was measured of one rival; variance, work and time are those of one draw, which is a whole replicate where draws come in replicates.
+/// What was measured of one rival; variance, work and time are those of one draw, which is a whole replicate
+/// where draws come in replicates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     /// Its name.
@@ -85,11 +86,12 @@ pub struct Measured {
     pub truth_error: f64,
     /// The standard error of the variance, from batches, in the truth's unit squared.
     pub variance_error: f64,
-    /// Whether a single draw of n holds more of the sum of squares Σ (X − X̄)² than ln²(1000 n)/n and 1/√n: the variance hangs on a few draws, its error bar is not to be
-    /// trusted, and it may be infinite.
+    /// Whether a single draw of n holds more of the sum of squares Σ (X − X̄)² than ln²(1000 n)/n and 1/√n:
+    /// the variance hangs on a few draws, its error bar is not to be trusted, and it may be infinite.
     ///
-    /// Of draws with tails no heavier than an exponential's, one set in a thousand is marked, or fewer; draws whose range is less than 11 standard deviations never are. A tail of infinite
-    /// variance is found the more surely the more draws there are, and none is below 132. See `tests/trade.rs` for how often.
+    /// Of draws with tails no heavier than an exponential's, one set in a thousand is marked, or fewer; draws
+    /// whose range is less than 11 standard deviations never are. A tail of infinite variance is found the
+    /// more surely the more draws there are, and none is below 132. See `tests/trade.rs` for how often.
     pub heavy_tail: bool,
     /// Evaluations of the integrand (or rays, or vertices) that a draw takes.
     pub evaluations: f64,
@@ -102,7 +104,8 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// The variance σ² of a draw, in the truth's unit squared: s² of the draws, and infinite where that was declared, whatever theirs is.
+    /// The variance σ² of a draw, in the truth's unit squared: s² of the draws, and infinite where that was
+    /// declared, whatever theirs is.
     pub fn variance(&self) -> f64 {
         match self.nature {
             Nature::InfiniteVariance => f64::INFINITY,
@@ -110,7 +113,8 @@ impl Measured {
         }
     }
 
-    /// The bias β, in the truth's unit: mean − truth of a biased rival, 0 of an unbiased one. It is measured, with an error of [`bias_error`](Self::bias_error).
+    /// The bias β, in the truth's unit: mean − truth of a biased rival, 0 of an unbiased one. It is measured,
+    /// with an error of [`bias_error`](Self::bias_error).
     pub fn bias(&self) -> f64 {
         if self.nature == Nature::Biased { self.estimate.mean() - self.truth } else { 0.0 }
     }
@@ -124,7 +128,8 @@ impl Measured {
         }
     }
 
-    /// Whether the bias is more than three of its std errors, and than rounding: of 370 rivals whose bias is 0, one looks like it. A bias that is not seen counts as none.
+    /// Whether the bias is more than three of its std errors, and than rounding: of 370 rivals whose bias is
+    /// 0, one looks like it. A bias that is not seen counts as none.
     ///
     /// ```
     /// use unbiased::from_fn;
@@ -132,7 +137,8 @@ impl Measured {
     ///
     /// // E[U] = 1/2, in 24 bits
     /// let short = from_fn(|rng| f64::from(rng.uniform() as f32));
-    /// let found = Trade::new(1, 0.5)?.seconds_each(0.01)?.compare(&[Rival::new("f32", short).nature(Nature::Biased)])?;
+    /// let rival = Rival::new("f32", short).nature(Nature::Biased);
+    /// let found = Trade::new(1, 0.5)?.seconds_each(0.01)?.compare(&[rival])?;
     /// let short = &found.rivals[0];
     /// assert!(!short.bias_seen());
     /// // 1 % is reached, as the bias is known to be smaller; 1e-7 may never be
@@ -157,7 +163,8 @@ impl Measured {
         [least, bias + reach]
     }
 
-    /// The efficiency 1/(σ² t), in 1/(unit² s); infinite where nothing varies, 0 where the variance is infinite.
+    /// The efficiency 1/(σ² t), in 1/(unit² s); infinite where nothing varies, 0 where the variance is
+    /// infinite.
     pub fn efficiency(&self) -> f64 {
         if self.varies() { (self.variance() * self.seconds).recip() } else { f64::INFINITY }
     }
@@ -193,8 +200,9 @@ impl Measured {
         (self.variance() * self.seconds / seconds).sqrt().hypot(self.counted_bias())
     }
 
-    /// When the root mean square error comes down to `error` > 0, relative to the truth (absolute where the truth is 0): after T = σ² t/(error² − β²) seconds on one core, but not before the first
-    /// draw, or replicate, is done.
+    /// When the root mean square error comes down to `error` > 0, relative to the truth (absolute where the
+    /// truth is 0): after T = σ² t/(error² − β²) seconds on one core, but not before the first draw, or
+    /// replicate, is done.
     pub fn seconds_to(&self, error: f64) -> Reach {
         let aim = error.abs() * self.scale();
         let [least, most] = self.bias_range();
@@ -209,8 +217,8 @@ impl Measured {
         }
     }
 
-    /// When a `rival` without bias overtakes this one: after T = (σ_r² t_r − σ² t)/β² seconds, if it ever does. Of a rival that was declared biased itself this is
-    /// [`Unknown`](Crossing::Unknown).
+    /// When a `rival` without bias overtakes this one: after T = (σ_r² t_r − σ² t)/β² seconds, if it ever
+    /// does. Of a rival that was declared biased itself this is [`Unknown`](Crossing::Unknown).
     pub fn overtaken_at(&self, rival: &Self) -> Crossing {
         let infinite = |one: &Self| one.nature == Nature::InfiniteVariance;
         let lead = rival.variance() * rival.seconds - self.variance() * self.seconds;

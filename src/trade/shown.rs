@@ -14,9 +14,14 @@ const ERRORS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
 impl Comparison {
     /// What the columns of the table are, in a paragraph.
-    pub const EXPLAINED: &str = "σ is the standard deviation of a draw (relative to the truth), the next column what a draw counts, its time the median of 17 batches ± half the distance of their quartiles. \
-        Efficiency is 1/(σ² × time) as a part of the best one's; rank is 1 + the number of rivals that are better by more than three std errors of the difference, so that those of rank 1 are not told apart from the best. \
-        The columns “to …” give the seconds on one core until the root mean square error is so much of the truth, at least those of one draw, which for points that come in replicates is a whole replicate; \
+    pub const EXPLAINED: &str = "σ is the standard deviation of a draw (relative to the truth), the next \
+                                 column what a draw counts, its time the median of 17 batches ± half the \
+                                 distance of their quartiles. \
+        Efficiency is 1/(σ² × time) as a part of the best one's; rank is 1 + the number of rivals that are \
+        better by more than three std errors of the difference, so that those of rank 1 are not told apart \
+        from the best. \
+        The columns “to …” give the seconds on one core until the root mean square error is so much of the \
+        truth, at least those of one draw, which for points that come in replicates is a whole replicate; \
         with “≥” it is not known whether a bias ends the fall before.";
 
     /// The names of the table's columns.
@@ -116,14 +121,17 @@ impl Comparison {
 
     /// A line a rival, with the columns' names first, for other programs.
     ///
-    /// Numbers are in full, in the truth's unit and in seconds; `inf` is what is infinite or never reached; a cell is empty where nothing is known or nothing applies. `nature` is `unbiased`, `biased` or
-    /// `infinite_variance`; `crossing`, where the best unbiased rival overtakes a biased one, is `at`, `from_the_start`, `never` or `unknown`.
+    /// Numbers are in full, in the truth's unit and in seconds; `inf` is what is infinite or never reached; a
+    /// cell is empty where nothing is known or nothing applies. `nature` is `unbiased`, `biased` or
+    /// `infinite_variance`; `crossing`, where the best unbiased rival overtakes a biased one, is `at`,
+    /// `from_the_start`, `never` or `unknown`.
     ///
     /// ```
     /// use unbiased::from_fn;
     /// use unbiased::trade::{Rival, Trade};
     ///
-    /// let found = Trade::new(1, 0.5)?.seconds_each(0.01)?.compare(&[Rival::new("U", from_fn(|rng| rng.uniform()))])?;
+    /// let rival = Rival::new("U", from_fn(|rng| rng.uniform()));
+    /// let found = Trade::new(1, 0.5)?.seconds_each(0.01)?.compare(&[rival])?;
     /// assert!(found.csv().starts_with("name,series,nature,draws,mean,"));
     /// // serde gives the same columns
     /// let json = serde_json::to_value(&found)?;
@@ -280,7 +288,8 @@ impl Serialize for Cell<'_> {
     }
 }
 
-/// As `seed`, `truth`, `truth_error` and `rivals`, each of which has the columns of [`Comparison::csv`]. JSON has no infinity: there it is null, too.
+/// As `seed`, `truth`, `truth_error` and `rivals`, each of which has the columns of [`Comparison::csv`]. JSON
+/// has no infinity: there it is null, too.
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut fields = serializer.serialize_struct("Comparison", 4)?;

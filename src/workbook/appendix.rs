@@ -1,4 +1,5 @@
-//! What the workbook says beside the questions: a text, tables and figures, on the page and by an example of its own.
+//! What the workbook says beside the questions: a text, tables and figures, on the page and by an example of
+//! its own.
 
 use super::Answer;
 use crate::error::{Error, Result};
@@ -19,15 +20,18 @@ pub(super) struct Beside {
 const ALL: [Beside; 2] = [
     Beside {
         example: "extremes",
-        about: "Where the obvious code breaks: formulas as one writes them down, inputs at which they fail, and what the crate gives there.",
+        about: "Where the obvious code breaks: formulas as one writes them down, inputs at which they fail, \
+                and what the crate gives there.",
         seconds: None,
         why: "it evaluates each formula once, and has no student edition and no hint",
     },
     Beside {
         example: "trade",
-        about: "What does a second buy? The workbook's rival estimators, compared by variance and time on one core of this machine.",
+        about: "What does a second buy? The workbook's rival estimators, compared by variance and time on \
+                one core of this machine.",
         seconds: Some("seconds for each estimator (0.03)"),
-        why: "it compares estimators on one core, for --seconds S each, and has no student edition and no hint",
+        why: "it compares estimators on one core, for --seconds S each, and has no student edition and no \
+              hint",
     },
 ];
 

@@ -1,4 +1,5 @@
-//! The table of questions, the options that all examples share, and how answers are printed, written as JSON and put on a page.
+//! The table of questions, the options that all examples share, and how answers are printed, written as JSON
+//! and put on a page.
 //!
 //! An example adds rows to a [`Sheet`], and has a one-line `main`:
 //!
@@ -62,8 +63,8 @@ use sheet::Voice;
 
 /// One question of the worksheet, with all that is known about it before anything is run.
 ///
-/// Texts are plain; `latex` is LaTeX, shown on the page. What stands between « and » in them is a formula in the question's letters,
-/// as answers are written: [`at`](Self::at) puts its value at the parameters there.
+/// Texts are plain; `latex` is LaTeX, shown on the page. What stands between « and » in them is a formula in
+/// the question's letters, as answers are written: [`at`](Self::at) puts its value at the parameters there.
 #[derive(Debug, Clone, Copy)]
 pub struct Question {
     /// The worksheet's number.
@@ -151,7 +152,8 @@ pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
     }
 }
 
-/// The `main` of an example: reads the command line, answers the question, prints the answers and saves their figures.
+/// The `main` of an example: reads the command line, answers the question, prints the answers and saves their
+/// figures.
 pub fn main_of(question: &'static Question, answer: AnswerFn) -> ExitCode {
     let answered = || {
         let questions = [question];
@@ -176,7 +178,8 @@ pub fn main_of(question: &'static Question, answer: AnswerFn) -> ExitCode {
 /// What an example beside the questions does.
 pub type AppendixFn = fn(&Options) -> Result<Appendix>;
 
-/// The `main` of this example beside the questions: reads the command line, prints the tables and saves the figures.
+/// The `main` of this example beside the questions: reads the command line, prints the tables and saves the
+/// figures.
 pub fn appendix(example: &str, appendix: AppendixFn) -> ExitCode {
     ended(appendix::beside(example).and_then(|beside| {
         let asked = Asked::Beside(beside);
@@ -246,8 +249,8 @@ impl Worksheet {
         self
     }
 
-    /// The worksheet's `main`: reads the command line, answers all questions, and writes `solution.html`, with what stands
-    /// beside them as pages of their own, or `student.html`, or both.
+    /// The worksheet's `main`: reads the command line, answers all questions, and writes `solution.html`,
+    /// with what stands beside them as pages of their own, or `student.html`, or both.
     ///
     /// Under `--seconds` what stands beside has at most a tenth of a second for each of its many estimators.
     pub fn run(self) -> ExitCode {
@@ -360,7 +363,8 @@ fn for_students(question: &'static Question, answer: AnswerFn, options: &Options
     sheet::answered(question, answer, &options, Voice::Brief)
 }
 
-/// An appendix in the time that it may take beside the questions; its text says so where that is less than what is asked for.
+/// An appendix in the time that it may take beside the questions; its text says so where that is less than
+/// what is asked for.
 fn within_reason(beside: &Beside, appendix: AppendixFn, options: &Options) -> Result<Appendix> {
     match options.budget {
         Some(Budget::Time(time)) if time > MOST_TIME_BESIDE && beside.seconds.is_some() => {
@@ -369,7 +373,8 @@ fn within_reason(beside: &Beside, appendix: AppendixFn, options: &Options) -> Re
             let mut appendix = appendix(&shorter)?;
             let (most, asked) = (MOST_TIME_BESIDE.as_secs_f64(), parseable(time.as_secs_f64()));
             appendix.text += &format!(
-                " Here it is {most} s each at most; \"cargo run --release --example {} -- --seconds {asked}\" takes the time asked for.",
+                " Here it is {most} s each at most; \"cargo run --release --example {} -- --seconds \
+                 {asked}\" takes the time asked for.",
                 beside.example
             );
             Ok(appendix)
@@ -430,7 +435,8 @@ mod tests {
         let time = |seconds| Some(Budget::Time(Duration::from_secs_f64(seconds)));
         assert_eq!(
             text("trade", time(2.5)),
-            "Some(Time(100ms)). Here it is 0.1 s each at most; \"cargo run --release --example trade -- --seconds 2.5\" takes the time asked for."
+            "Some(Time(100ms)). Here it is 0.1 s each at most; \"cargo run --release --example trade -- \
+             --seconds 2.5\" takes the time asked for."
         );
         assert_eq!(text("trade", time(0.1)), "Some(Time(100ms)).");
         assert_eq!(text("trade", time(0.02)), "Some(Time(20ms)).");

@@ -343,7 +343,8 @@ impl Options {
         parameters.filter_map(|parameter| Some((parameter.name, self.value(parameter.name)?)))
     }
 
-    /// The number of the question's own option `name`: as given, or its default. NaN if the question has no such option.
+    /// The number of the question's own option `name`: as given, or its default. NaN if the question has no
+    /// such option.
     pub fn number(&self, name: &str) -> f64 {
         match self.value(name) {
             Some(Value::Number(number)) => number,
@@ -351,7 +352,8 @@ impl Options {
         }
     }
 
-    /// The same of an option that is a count or "all", which is None. None, too, if the question has no such option.
+    /// The same of an option that is a count or "all", which is None. None, too, if the question has no such
+    /// option.
     pub fn limit(&self, name: &str) -> Option<u32> {
         match self.value(name) {
             Some(Value::Limit(limit)) => limit,
@@ -392,8 +394,9 @@ impl Options {
         }
     }
 
-    /// Runs an estimator until the budget that the options name is spent, `draws` times where they name none, with a progress bar on a terminal. An error
-    /// that is out of reach of five seconds' draws is not reached: the row says so.
+    /// Runs an estimator until the budget that the options name is spent, `draws` times where they name none,
+    /// with a progress bar on a terminal. An error that is out of reach of five seconds' draws is not
+    /// reached: the row says so.
     ///
     /// # Errors
     /// Those of [`Run::estimate`].
@@ -417,8 +420,8 @@ impl Options {
         })
     }
 
-    /// Does what needs the folder for figures and pages: the folder is made first, before anything is computed for it, and goes
-    /// away again if nothing came of it.
+    /// Does what needs the folder for figures and pages: the folder is made first, before anything is
+    /// computed for it, and goes away again if nothing came of it.
     pub(super) fn with_out(&self, work: impl FnOnce() -> Result<()>) -> Result<()> {
         let was_there = self.out.exists();
         std::fs::create_dir_all(&self.out).map_err(|error| Error::Write {
@@ -433,8 +436,8 @@ impl Options {
         })
     }
 
-    /// The names of those parameters that some row has otherwise than the question's options: the others stand in the command
-    /// that repeats the answer.
+    /// The names of those parameters that some row has otherwise than the question's options: the others
+    /// stand in the command that repeats the answer.
     pub(super) fn varied<'a>(&self, answers: impl IntoIterator<Item = &'a Answer>) -> Vec<Cow<'static, str>> {
         let parameters = answers.into_iter().flat_map(Answer::parameters);
         let as_given = |name: &str, value: Value| self.value(&name.replace('_', "-")) == Some(value);
@@ -478,7 +481,8 @@ impl Options {
                     [draws] => format!(" --draws {draws}"),
                     _ => {
                         remark = Some(
-                            "where N is the number of draws of the row to be repeated: the clock gave each its own",
+                            "where N is the number of draws of the row to be repeated: the clock gave each \
+                             its own",
                         );
                         " --draws N".into()
                     }

@@ -299,7 +299,8 @@ fn within_reason(estimator: &(impl Estimator + ?Sized), draws: u64) -> (u64, Opt
     let fewer = rounded(fewer as f64, 1).parse::<f64>().map_or(fewer, |round| round as u64).max(2);
     let each = rounded(each, 2);
     let cut = format!(
-        "Cut short: a draw takes about {each} random numbers or evaluations. --draws {draws} takes all of them."
+        "Cut short: a draw takes about {each} random numbers or evaluations. --draws {draws} takes all of \
+         them."
     );
     (fewer, Some(cut))
 }

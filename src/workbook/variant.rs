@@ -1,7 +1,9 @@
-//! Numbers of each student's own: a name, any text, chooses the parameters of every question, the same on every machine.
+//! Numbers of each student's own: a name, any text, chooses the parameters of every question, the same on
+//! every machine.
 //!
-//! A variant is fair. Its numbers are short; none hides a mistake (λ = 1, p_rr = ½, a square, L_i = 1); and every wrong
-//! answer is at least 5 % off the right one, and every classic wrong answer at least 5 % off every other.
+//! A variant is fair. Its numbers are short; none hides a mistake (λ = 1, p_rr = ½, a square, L_i = 1); and
+//! every wrong answer is at least 5 % off the right one, and every classic wrong answer at least 5 % off
+//! every other.
 
 use super::options::Options;
 use super::{Number, Question, Value, questions};

@@ -19,7 +19,8 @@ pub fn draws(n: u64) -> u64 {
     if mutation() { n.div_ceil(20) } else { n }
 }
 
-/// proptest's settings: as many cases as asked for, the same ones on every run; under mutation a tenth, but not below 100.
+/// proptest's settings: as many cases as asked for, the same ones on every run; under mutation a tenth, but
+/// not below 100.
 pub fn config(cases: u32) -> proptest::test_runner::Config {
     proptest::test_runner::Config {
         cases: if mutation() { cases.min(cases.div_ceil(10).max(100)) } else { cases },

@@ -1,7 +1,8 @@
 //! Light in the box room without random paths: closed forms, and quadrature of closed forms.
 //!
-//! What p sees of the light is a polygon: the light, less what lies below p's horizon, less the cube's shadow, which is convex. From the cube's
-//! top p sees the walls above z = 1 and the ceiling, which see the whole light; the ceiling gets none of it, being in its plane.
+//! What p sees of the light is a polygon: the light, less what lies below p's horizon, less the cube's
+//! shadow, which is convex. From the cube's top p sees the walls above z = 1 and the ceiling, which see the
+//! whole light; the ceiling gets none of it, being in its plane.
 
 use std::f64::consts::FRAC_1_PI;
 use std::sync::LazyLock;
@@ -11,10 +12,11 @@ use glam::DVec3;
 use super::{BoxRoom, Face, Vertex, form_factor};
 
 impl BoxRoom {
-    /// The radiance, in W m⁻² sr⁻¹, that comes from the light to p and off it, L₁ = ρ L_e P: exact everywhere.
+    /// The radiance, in W m⁻² sr⁻¹, that comes from the light to p and off it, L₁ = ρ L_e P: exact
+    /// everywhere.
     ///
-    /// P is the form factor of the part of the light that p sees: of the square above p's horizon, less the cube's shadow on it, a convex polygon, too ([`form_factor`], after
-    /// Lambert 1760).
+    /// P is the form factor of the part of the light that p sees: of the square above p's horizon, less the
+    /// cube's shadow on it, a convex polygon, too ([`form_factor`], after Lambert 1760).
     ///
     /// ```
     /// use unbiased::paths::room::{BoxRoom, Scene};
@@ -29,15 +31,18 @@ impl BoxRoom {
         self.albedo(&p) * self.scene().radiance * seen(self, &p)
     }
 
-    /// The radiance, in W m⁻² sr⁻¹, that comes from the light to p by way of one other point: on the cube's top, where it is known exactly. None elsewhere.
+    /// The radiance, in W m⁻² sr⁻¹, that comes from the light to p by way of one other point: on the cube's
+    /// top, where it is known exactly. None elsewhere.
     ///
-    /// p sees the walls above the cube's height, which see the whole light, and the ceiling, which lies in the light's plane and gets none. So it is
+    /// p sees the walls above the cube's height, which see the whole light, and the ceiling, which lies in
+    /// the light's plane and gets none. So it is
     ///
     /// > L₂ = (ρ/π) ∫ L₁(x) cos θ dω
     ///
-    /// over the directions to these parts of the four walls, with L₁ = [`direct`](Self::direct), integrated by the Gauss–Legendre rule. A light that comes near the
-    /// walls lights them unevenly within that distance of their upper edges, so the rule's cells shrink towards these. The relative error was 1e-12 at most
-    /// for light half-widths from 0.5 to 2, the whole ceiling.
+    /// over the directions to these parts of the four walls, with L₁ = [`direct`](Self::direct), integrated
+    /// by the Gauss–Legendre rule. A light that comes near the walls lights them unevenly within that
+    /// distance of their upper edges, so the rule's cells shrink towards these. The relative error was 1e-12
+    /// at most for light half-widths from 0.5 to 2, the whole ceiling.
     ///
     /// ```
     /// use unbiased::paths::room::{BoxRoom, Scene};
@@ -55,7 +60,8 @@ impl BoxRoom {
     }
 }
 
-/// The part of the cosine-weighted hemisphere above a point that the light fills, the cube's shadow taken off.
+/// The part of the cosine-weighted hemisphere above a point that the light fills, the cube's shadow taken
+/// off.
 pub(crate) fn seen(room: &BoxRoom, vertex: &Vertex) -> f64 {
     let of = |corners: &[DVec3]| form_factor(corners, vertex.position(), vertex.normal());
     of(&room.light_corners()) - of(&shadow(room, vertex))
@@ -96,10 +102,12 @@ pub(crate) fn over_the_walls(room: &BoxRoom, f: impl Fn(&Vertex, DVec3) -> f64) 
 /// An area of wall, in m², that adds nothing to what p sees, whatever its light.
 const NEGLIGIBLE: f64 = 1e-12;
 
-/// Cuts the interval between `end` and `other` into cells that shrink towards `end`, each given as \[low, high\].
+/// Cuts the interval between `end` and `other` into cells that shrink towards `end`, each given as \[low,
+/// high\].
 ///
-/// What a wall gets from a light at the distance d from it is smooth but for singularities `distance` off its edges and as far off the real axis. From all of these
-/// cells they are so far away that 24 nodes leave an error of 1e-14 or so; from `distance` = 1 on, the whole wall is such a cell.
+/// What a wall gets from a light at the distance d from it is smooth but for singularities `distance` off its
+/// edges and as far off the real axis. From all of these cells they are so far away that 24 nodes leave an
+/// error of 1e-14 or so; from `distance` = 1 on, the whole wall is such a cell.
 fn cells(distance: f64, end: f64, other: f64) -> impl Iterator<Item = [f64; 2]> {
     let (first, length) = (if distance < 1.0 { 2.0 * distance } else { f64::INFINITY }, (other - end).abs());
     let mut from = 0.0;
@@ -112,7 +120,8 @@ fn cells(distance: f64, end: f64, other: f64) -> impl Iterator<Item = [f64; 2]> 
     })
 }
 
-/// What the cube hides of the light: empty from z = 1 upwards, and from the cube's own sides, where the horizon hides the same.
+/// What the cube hides of the light: empty from z = 1 upwards, and from the cube's own sides, where the
+/// horizon hides the same.
 fn shadow(room: &BoxRoom, vertex: &Vertex) -> Vec<DVec3> {
     let (o, c) = (vertex.position(), Face::CUBE_HALF_WIDTH);
     if o.z >= Face::CUBE_HEIGHT || vertex.face().is_cube() {

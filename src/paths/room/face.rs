@@ -5,7 +5,8 @@ use glam::DVec3;
 use crate::error::{Error, Result};
 use crate::lambertian::hemisphere::Direction;
 
-/// A face of the room, seen from inside, or of the cube, seen from outside. The light is a part of the ceiling.
+/// A face of the room, seen from inside, or of the cube, seen from outside. The light is a part of the
+/// ceiling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Face {
     /// The cube's top z = 1.
@@ -93,13 +94,15 @@ impl Face {
         &FRAMES[self as usize % FRAMES.len()]
     }
 
-    /// The smallest and the largest coordinates of its points, in metres; [`normal`](Self::normal) has an example. The floor's are those of the whole square, with what the cube stands on.
+    /// The smallest and the largest coordinates of its points, in metres; [`normal`](Self::normal) has an
+    /// example. The floor's are those of the whole square, with what the cube stands on.
     #[inline]
     pub fn bounds(self) -> [DVec3; 2] {
         BOUNDS[self as usize % BOUNDS.len()]
     }
 
-    /// The area in m², as in the example of [`is_cube`](Self::is_cube): the floor's without what the cube stands on, the ceiling's with the light.
+    /// The area in m², as in the example of [`is_cube`](Self::is_cube): the floor's without what the cube
+    /// stands on, the ceiling's with the light.
     pub fn area(self) -> f64 {
         match self {
             Self::Floor => 15.0,
@@ -109,8 +112,8 @@ impl Face {
     }
 }
 
-/// Two tangents and the normal of each face, in the order of [`Face::ALL`]. Whether a frame is right- or left-handed makes no difference to
-/// directions that are symmetric around the normal.
+/// Two tangents and the normal of each face, in the order of [`Face::ALL`]. Whether a frame is right- or
+/// left-handed makes no difference to directions that are symmetric around the normal.
 const FRAMES: [[DVec3; 3]; 11] = [
     [DVec3::X, DVec3::Y, DVec3::Z],
     [DVec3::Y, DVec3::Z, DVec3::NEG_X],
@@ -162,8 +165,8 @@ pub struct Vertex {
 }
 
 impl Vertex {
-    /// The point at these coordinates, with the face that it lies on. On an edge, which several faces share, the cube's top comes first,
-    /// then the cube's sides, the floor, the ceiling and the walls.
+    /// The point at these coordinates, with the face that it lies on. On an edge, which several faces share,
+    /// the cube's top comes first, then the cube's sides, the floor, the ceiling and the walls.
     ///
     /// # Errors
     /// If no face is there, or only the part of the floor that the cube stands on.
@@ -173,7 +176,8 @@ impl Vertex {
     ///
     /// assert_eq!(Vertex::at([2.0, 2.0, 3.0])?.face(), Face::East);
     /// let error = Vertex::at([0.0, 0.25, 0.0]).unwrap_err();
-    /// assert_eq!(error.to_string(), "the point (0, 0.25, 0) lies under the cube: on the floor, |x| or |y| must be at least 0.5");
+    /// let sentence = "lies under the cube: on the floor, |x| or |y| must be at least 0.5";
+    /// assert_eq!(error.to_string(), format!("the point (0, 0.25, 0) {sentence}"));
     /// # Ok::<(), unbiased::Error>(())
     /// ```
     pub fn at(point: [f64; 3]) -> Result<Self> {
@@ -214,7 +218,8 @@ impl Vertex {
         self.face.normal()
     }
 
-    /// A direction above this point's face, given in the face's own frame with z along the normal, in the room's coordinates.
+    /// A direction above this point's face, given in the face's own frame with z along the normal, in the
+    /// room's coordinates.
     ///
     /// ```
     /// use glam::DVec3;
@@ -233,7 +238,8 @@ impl Vertex {
     }
 }
 
-const NO_FACE: &str = "lies on no face: it must lie on the room's (|x| = 2, |y| = 2, z = 0 or z = 4) or on the cube's (|x| = 0.5 or |y| = 0.5 up to z = 1, or z = 1 within)";
+const NO_FACE: &str = "lies on no face: it must lie on the room's (|x| = 2, |y| = 2, z = 0 or z = 4) or on \
+                       the cube's (|x| = 0.5 or |y| = 0.5 up to z = 1, or z = 1 within)";
 
 fn under_the_cube(position: DVec3) -> bool {
     position.x.abs().max(position.y.abs()) < Face::CUBE_HALF_WIDTH

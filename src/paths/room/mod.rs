@@ -1,12 +1,14 @@
 //! Section 4: the box room, the one scene that the worksheet's paths need.
 //!
-//! In metres, z up: a room \[−2, 2\]×\[−2, 2\]×\[0, 4\] of diffuse faces; the cube \[−½, ½\]²×\[0, 1\] on its floor; a square light in the
-//! middle of the ceiling, facing down and reflecting nothing; and p, the point whose radiance is asked for. The shapes are fixed,
-//! so a ray is followed by two slab tests, one from inside the room and one from outside the cube: [`nearest_hit`] and [`visible`]. A scene's
-//! numbers can be chosen: [`Scene`] holds them, [`BoxRoom`] is a scene that was found sound.
+//! In metres, z up: a room \[−2, 2\]×\[−2, 2\]×\[0, 4\] of diffuse faces; the cube \[−½, ½\]²×\[0, 1\] on its
+//! floor; a square light in the middle of the ceiling, facing down and reflecting nothing; and p, the point
+//! whose radiance is asked for. The shapes are fixed, so a ray is followed by two slab tests, one from inside
+//! the room and one from outside the cube: [`nearest_hit`] and [`visible`]. A scene's numbers can be chosen:
+//! [`Scene`] holds them, [`BoxRoom`] is a scene that was found sound.
 //!
-//! The light that reaches a point at once has a closed form where the cube hides none of it, [`BoxRoom::direct`], made of the form
-//! factor of a polygon, [`form_factor`]. What arrives after more bounces is estimated by [`paths`](crate::paths).
+//! The light that reaches a point at once has a closed form where the cube hides none of it,
+//! [`BoxRoom::direct`], made of the form factor of a polygon, [`form_factor`]. What arrives after more
+//! bounces is estimated by [`paths`](crate::paths).
 
 use glam::DVec3;
 
@@ -40,11 +42,13 @@ pub struct Scene {
     pub wall_albedo: f64,
     /// The albedo ρ of the cube's five, 0.8.
     pub cube_albedo: f64,
-    /// The radiance L_e of the light in W m⁻² sr⁻¹, 10. From 1e-100 to 1e100, or 0: neither its products with areas and weights nor their squares leave `f64` then.
+    /// The radiance L_e of the light in W m⁻² sr⁻¹, 10. From 1e-100 to 1e100, or 0: neither its products with
+    /// areas and weights nor their squares leave `f64` then.
     pub radiance: f64,
     /// Half the light's side in metres, ½, and from 1e-50 to 2; 0 is no light.
     pub light_half_width: f64,
-    /// The radiance that every face emits in W m⁻² sr⁻¹, the light apart: 0, within the same limits. With it and no light the room is a furnace, in which everything is exact.
+    /// The radiance that every face emits in W m⁻² sr⁻¹, the light apart: 0, within the same limits. With it
+    /// and no light the room is a furnace, in which everything is exact.
     pub emission: f64,
     /// The point p, (0, 0, 1): the middle of the cube's top.
     pub point: [f64; 3],
@@ -84,8 +88,9 @@ impl BoxRoom {
     /// The scene, checked.
     ///
     /// # Errors
-    /// If an albedo is not in \[0, 1\], the radiance or the emission is neither 0 nor from 1e-100 to 1e100, the light does not fit the ceiling or is narrower than 1e-50 m, or p lies
-    /// on no face, under the cube, or on the light, which reflects nothing.
+    /// If an albedo is not in \[0, 1\], the radiance or the emission is neither 0 nor from 1e-100 to 1e100,
+    /// the light does not fit the ceiling or is narrower than 1e-50 m, or p lies on no face, under the cube,
+    /// or on the light, which reflects nothing.
     pub fn new(scene: Scene) -> Result<Self> {
         let fraction = |name, albedo: f64| {
             let allowed = "between 0 and 1 (above 1 it would create energy)";
@@ -105,7 +110,8 @@ impl BoxRoom {
         let point = Vertex::at(scene.point)?;
         let room = Self { scene, point };
         if room.is_light(&point) {
-            let reason = "lies on the light, which reflects nothing: on the ceiling, |x| or |y| must be above the light's half-width";
+            let reason = "lies on the light, which reflects nothing: on the ceiling, |x| or |y| must be \
+                          above the light's half-width";
             return Err(face::off(scene.point, reason));
         }
         Ok(room)
@@ -139,7 +145,8 @@ impl BoxRoom {
         vertex.face() == Face::Ceiling && at.x.abs().max(at.y.abs()) <= h && h > 0.0
     }
 
-    /// The albedo ρ at a point: the walls', the cube's, or 0 on the light. [`is_light`](Self::is_light) has an example.
+    /// The albedo ρ at a point: the walls', the cube's, or 0 on the light. [`is_light`](Self::is_light) has
+    /// an example.
     #[inline]
     pub fn albedo(&self, vertex: &Vertex) -> f64 {
         match vertex.face() {
@@ -149,7 +156,8 @@ impl BoxRoom {
         }
     }
 
-    /// The radiance L_e that a point emits, in W m⁻² sr⁻¹: the light's, or the faces' emission. [`is_light`](Self::is_light) has an example.
+    /// The radiance L_e that a point emits, in W m⁻² sr⁻¹: the light's, or the faces' emission.
+    /// [`is_light`](Self::is_light) has an example.
     #[inline]
     pub fn emitted(&self, vertex: &Vertex) -> f64 {
         if self.is_light(vertex) { self.scene.radiance } else { self.scene.emission }
@@ -178,11 +186,12 @@ impl BoxRoom {
         side * side
     }
 
-    /// The radiance, in W m⁻² sr⁻¹, that comes from the light to a point and off it, ρ L_e P with P the light's [`form_factor`], **as if the cube hid nothing**: light
-    /// after one bounce, k = 1. [`light_corners`](Self::light_corners) has an example.
+    /// The radiance, in W m⁻² sr⁻¹, that comes from the light to a point and off it, ρ L_e P with P the
+    /// light's [`form_factor`], **as if the cube hid nothing**: light after one bounce, k = 1.
+    /// [`light_corners`](Self::light_corners) has an example.
     ///
-    /// It does hide some of it from the floor near the cube, where max(|x|, |y|) < (2 + h)/3 for a light of half-width h, and nowhere else;
-    /// [`one_bounce`](Self::one_bounce) takes that off.
+    /// It does hide some of it from the floor near the cube, where max(|x|, |y|) < (2 + h)/3 for a light of
+    /// half-width h, and nowhere else; [`one_bounce`](Self::one_bounce) takes that off.
     pub fn direct(&self, vertex: &Vertex) -> f64 {
         let seen = form_factor(&self.light_corners(), vertex.position(), vertex.normal());
         self.albedo(vertex) * self.scene.radiance * seen

@@ -7,23 +7,26 @@ use glam::DVec3;
 use super::volume::volume_sign;
 use crate::float::two_sum;
 
-/// The part P of the cosine-weighted hemisphere above `point` that a plane polygon fills: P = |Σ Θᵢ Γᵢ·n|/(2π), in \[0, 1\].
+/// The part P of the cosine-weighted hemisphere above `point` that a plane polygon fills: P = |Σ Θᵢ
+/// Γᵢ·n|/(2π), in \[0, 1\].
 ///
-/// Θᵢ is the angle between the directions vᵢ, vᵢ₊₁ to neighbouring corners and Γᵢ the unit vector of vᵢ × vᵢ₊₁
-/// (Lambert, *Photometria*, 1760; Baum, Rushmeier & Winget 1989). What lies below the horizon of `normal`, of any length,
-/// is cut off. A diffuse surface of albedo ρ reflects ρ L_e P of a light of radiance L_e of this shape (worksheet 4);
-/// one draw that looks for it along a cosine-distributed direction has variance (ρ L_e)² P(1 − P).
+/// Θᵢ is the angle between the directions vᵢ, vᵢ₊₁ to neighbouring corners and Γᵢ the unit vector of vᵢ ×
+/// vᵢ₊₁ (Lambert, *Photometria*, 1760; Baum, Rushmeier & Winget 1989). What lies below the horizon of
+/// `normal`, of any length, is cut off. A diffuse surface of albedo ρ reflects ρ L_e P of a light of radiance
+/// L_e of this shape (worksheet 4); one draw that looks for it along a cosine-distributed direction has
+/// variance (ρ L_e)² P(1 − P).
 ///
-/// The corners follow each other around the polygon, in either sense. P is 0 for fewer than three of them, and where
-/// `point` lies in the polygon's plane: it is seen edge on, from its boundary, too. It is NaN where it has no meaning: if
-/// a coordinate is NaN or infinite, or the normal has no length.
+/// The corners follow each other around the polygon, in either sense. P is 0 for fewer than three of them,
+/// and where `point` lies in the polygon's plane: it is seen edge on, from its boundary, too. It is NaN where
+/// it has no meaning: if a coordinate is NaN or infinite, or the normal has no length.
 ///
 /// # Accuracy
-/// P is right to 1e-15, whatever the sizes: an edge of 1e300 m may pass the point at 1 m, and the point be that near to
-/// the polygon's plane. It is right to a few ulp of itself, too, however small the polygon, if that is not much longer than
-/// wide *as seen from the point*: neither a needle, nor nearly edge on, nor only just above the horizon. (Against 2400 bits,
-/// the largest error was 4e-16 in 11,000 polygons of any form, of 1e-16 to 1e300 times the distance, and 9 ε of P in 11,000
-/// triangles not longer than wide, of 1e-150 times the distance or more.)
+/// P is right to 1e-15, whatever the sizes: an edge of 1e300 m may pass the point at 1 m, and the point be
+/// that near to the polygon's plane. It is right to a few ulp of itself, too, however small the polygon, if
+/// that is not much longer than wide *as seen from the point*: neither a needle, nor nearly edge on, nor only
+/// just above the horizon. (Against 2400 bits, the largest error was 4e-16 in 11,000 polygons of any form, of
+/// 1e-16 to 1e300 times the distance, and 9 ε of P in 11,000 triangles not longer than wide, of 1e-150 times
+/// the distance or more.)
 ///
 /// ```
 /// use glam::DVec3;
@@ -50,8 +53,8 @@ pub fn form_factor(corners: &[DVec3], point: DVec3, normal: DVec3) -> f64 {
     }
     let outline = polygon.above_horizon(normal);
     let Some(first) = outline.first().copied() else { return 0.0 };
-    // Σ Θᵢ Γᵢ = Σ uᵢ × uᵢ₊₁ + Σ (Θᵢ − sin Θᵢ) Γᵢ for the unit vectors u to the corners. In the first sum u₀ may be
-    // taken from every uᵢ, so that for a small polygon nothing cancels; the second is smaller by Θ².
+    // Σ Θᵢ Γᵢ = Σ uᵢ × uᵢ₊₁ + Σ (Θᵢ − sin Θᵢ) Γᵢ for the unit vectors u to the corners. In the first sum u₀
+    // may be taken from every uᵢ, so that for a small polygon nothing cancels; the second is smaller by Θ².
     let apart: Vec<DVec3> = outline.iter().map(|vertex| vertex.apart(&first)).collect();
     let mut sum = 0.0;
     let ends = outline.iter().zip(outline.iter().cycle().skip(1));
@@ -116,8 +119,8 @@ impl Exact {
     }
 }
 
-/// A polygon as seen from the point: P does not depend on the unit of length, which is chosen so that no square leaves
-/// `f64`. A power of two leaves all differences what they are.
+/// A polygon as seen from the point: P does not depend on the unit of length, which is chosen so that no
+/// square leaves `f64`. A power of two leaves all differences what they are.
 struct Polygon {
     point: DVec3,
     corners: Vec<DVec3>,

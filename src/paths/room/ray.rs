@@ -1,21 +1,24 @@
 //! Where a ray ends: two slab tests.
 //!
-//! A ray is inside the room and outside the cube, so it ends at the first of the room's planes that lies ahead unless it enters the cube before that. The
-//! coordinate along the normal of the face that it hits is set exactly, and the others are kept within the face, so no ray starts a hair
-//! behind its face, none hits the face it starts on, and no distance has to be added for that.
+//! A ray is inside the room and outside the cube, so it ends at the first of the room's planes that lies
+//! ahead unless it enters the cube before that. The coordinate along the normal of the face that it hits is
+//! set exactly, and the others are kept within the face, so no ray starts a hair behind its face, none hits
+//! the face it starts on, and no distance has to be added for that.
 
 use glam::DVec3;
 
 use super::face::{Face, Vertex};
 
-/// The first point that a ray from `from` meets in `direction` (of any length, in the room's coordinates). None if the direction has no length, is
-/// not finite, or points below the horizon of `from`.
+/// The first point that a ray from `from` meets in `direction` (of any length, in the room's coordinates).
+/// None if the direction has no length, is not finite, or points below the horizon of `from`.
 ///
 /// Special rays are treated so that every one of them ends on a face:
-/// - Along a face of the room, it goes on to the wall ahead. Along a face of the cube, or through its edge or corner without entering it, it passes.
+/// - Along a face of the room, it goes on to the wall ahead. Along a face of the cube, or through its edge or
+///   corner without entering it, it passes.
 /// - Into an edge or corner of the room, it ends there, on one of the faces that meet.
 /// - Along the floor it ends at the cube: nothing passes under it.
-/// - From an edge between two faces of the room towards the other one, it ends where it starts, on that other one.
+/// - From an edge between two faces of the room towards the other one, it ends where it starts, on that other
+///   one.
 ///
 /// ```
 /// use glam::DVec3;
@@ -48,7 +51,8 @@ pub(crate) fn nearest(origin: DVec3, direction: DVec3) -> Vertex {
     ray.at(distance, face)
 }
 
-/// Whether the cube leaves the view from `from` to a point of the room free. It may be touched. A point that is not finite is not seen.
+/// Whether the cube leaves the view from `from` to a point of the room free. It may be touched. A point that
+/// is not finite is not seen.
 ///
 /// ```
 /// use glam::DVec3;
@@ -76,8 +80,9 @@ pub(crate) fn sees(from: &Vertex, to: DVec3) -> bool {
     !(blocks(enters, leaves) && enters < 1.0 - f64::EPSILON)
 }
 
-/// Whether a line that enters the cube and leaves it at these distances does so ahead of its origin. One that rounding put a hair inside the cube counts as on
-/// the face that is nearer: what goes out of it does not come out on the other side.
+/// Whether a line that enters the cube and leaves it at these distances does so ahead of its origin. One that
+/// rounding put a hair inside the cube counts as on the face that is nearer: what goes out of it does not
+/// come out on the other side.
 #[inline]
 fn blocks(enters: f64, leaves: f64) -> bool {
     enters < leaves && enters + leaves > 0.0
@@ -128,8 +133,9 @@ impl Ray {
         (plane - origin) * inverse
     }
 
-    /// Where the ray's line enters the cube and where it leaves it, and through which face it enters. It meets the cube where it
-    /// enters before it leaves; the cube's z has no lower end, since nothing passes under it.
+    /// Where the ray's line enters the cube and where it leaves it, and through which face it enters. It
+    /// meets the cube where it enters before it leaves; the cube's z has no lower end, since nothing passes
+    /// under it.
     #[inline]
     fn cube(&self) -> (f64, f64, Face) {
         let (w, top) = (Face::CUBE_HALF_WIDTH, Face::CUBE_HEIGHT);
@@ -161,7 +167,8 @@ impl Ray {
     }
 }
 
-/// Where a line enters and leaves the slab from −w to w on one axis. A line along it is in it if it is strictly between.
+/// Where a line enters and leaves the slab from −w to w on one axis. A line along it is in it if it is
+/// strictly between.
 #[inline]
 fn between(direction: f64, origin: f64, inverse: f64, w: f64) -> (f64, f64) {
     if direction == 0.0 {

@@ -22,7 +22,8 @@ pub(super) fn volume_sign(corners: &[DVec3], point: DVec3) -> f64 {
     sum.sign()
 }
 
-/// A sum of products of three numbers, to the last bit: its digits in base 2³², by their place, not carried yet.
+/// A sum of products of three numbers, to the last bit: its digits in base 2³², by their place, not carried
+/// yet.
 #[derive(Default)]
 struct ExactSum(BTreeMap<i64, i128>);
 
@@ -71,12 +72,14 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(Config { rng_seed: RngSeed::Fixed(1), failure_persistence: None, ..Config::with_cases(2_000) })]
+        #![proptest_config(Config { rng_seed: RngSeed::Fixed(1), failure_persistence: None,
+            ..Config::with_cases(2_000) })]
 
         /// Against integers, in any unit, and for a pyramid, whose two tetrahedra may cancel.
         #[test]
         fn the_sign_of_a_volume_is_exact(
-            corners in prop::array::uniform4(whole(1 << 40)), point in whole(1 << 40), power in -1074..900, one in 0..4usize,
+            corners in prop::array::uniform4(whole(1 << 40)), point in whole(1 << 40), power in -1074..900,
+                one in 0..4usize,
         ) {
             let determinant = |a: [i64; 3], b: [i64; 3], c: [i64; 3]| {
                 let [a, b, c] = [a, b, c].map(|v| [0, 1, 2].map(|i| i128::from(v[i] - point[i])));
@@ -85,7 +88,8 @@ mod tests {
             };
             let [a, b, c, d] = corners;
             let volume = determinant(a, b, c) / 2 + determinant(a, c, d) / 2;
-            let at = |v: [i64; 3]| DVec3::from_array(v.map(|x| x as f64 * 2f64.powi(power / 2) * 2f64.powi(power - power / 2)));
+            let at = |v: [i64; 3]| DVec3::from_array(v.map(|x|
+                x as f64 * 2f64.powi(power / 2) * 2f64.powi(power - power / 2)));
             if volume.abs() > 1 {
                 prop_assert_eq!(volume_sign(&corners.map(at), at(point)), volume.signum() as f64);
             }

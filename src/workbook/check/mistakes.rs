@@ -5,8 +5,8 @@ use crate::check::{Exercise, Mistake, Probe};
 
 /// The mean of each classic mistake over the truth, on each probe of its exercise.
 ///
-/// A 1 in full is a mistake that the probe cannot see. Where the truth is 0 the ratio is taken to ∫ |f|, and 0 is
-/// right.
+/// A 1 in full is a mistake that the probe cannot see. Where the truth is 0 the ratio is taken to ∫ |f|, and
+/// 0 is right.
 pub fn mistakes(exercise: &Exercise) -> Table {
     let probes = exercise.probes();
     let row = |mistake: &Mistake| {

@@ -266,9 +266,11 @@ impl Wish {
         let measured = diagnosis.measurements().iter().map(|of| {
             let ratio = of.ratio();
             let fits = elsewhere.iter().find(|(number, _)| *number == number_of(of.probe, &probes));
-            let fits: Vec<usize> = fits.map_or(Vec::new(), |(_, others)| others.iter().map(|(n, _)| *n).collect());
+            let fits: Vec<usize> =
+                fits.map_or(Vec::new(), |(_, others)| others.iter().map(|(n, _)| *n).collect());
             json!({
-                "probe": number_of(of.probe, &probes), "what": of.probe.to_string(), "truth": of.probe.truth(),
+                "probe": number_of(of.probe, &probes), "what": of.probe.to_string(),
+                    "truth": of.probe.truth(),
                 "estimate": of.estimate.mean(), "std_error": of.estimate.std_error(),
                 "draws": of.estimate.draws(), "ratio": ratio.mean, "fits_probes": fits,
             })

@@ -114,7 +114,8 @@ struct Part {
     estimator: &'static str,
 }
 
-const PYTHON: &str = r##"# Question QUESTION, in Python. CHECK stands for: cargo run --release --example check_mine -- --question QUESTION
+const PYTHON: &str = r##"# Question QUESTION, in Python. CHECK stands for
+#   cargo run --release --example check_mine -- --question QUESTION
 #   CHECK --probes | python3 mine.py | CHECK --draws-from -
 import math, random, sys
 
@@ -132,7 +133,8 @@ for line in sys.stdin:
             print(word[0], draw(GIVEN))
 "##;
 
-const CPP: &str = r##"// Question QUESTION, in C++. CHECK stands for: cargo run --release --example check_mine -- --question QUESTION
+const CPP: &str = r##"// Question QUESTION, in C++. CHECK stands for
+//   cargo run --release --example check_mine -- --question QUESTION
 //   c++ -O2 -o mine mine.cpp && CHECK --probes | ./mine | CHECK --draws-from -
 #include <cmath>
 #include <iostream>
@@ -163,10 +165,13 @@ const PARTS: [Parts; 5] = [
     Parts {
         exercise: "samples",
         python: Part {
-            helpers: r#"AVERAGE = {"x": lambda x, rate: x, "cdf": lambda x, rate: -math.expm1(-rate * max(x, 0)),
+            helpers: r#"AVERAGE = {"x": lambda x, rate: x,
+           "cdf": lambda x, rate: -math.expm1(-rate * max(x, 0)),
            "capped": lambda x, rate: min(max(x, 0), 2 / rate)}
 "#,
-            estimator: "    u = random.random()\n    x = -rate * math.log(1 - u)\n    return AVERAGE[average](x, rate)",
+            estimator: r#"    u = random.random()
+    x = -rate * math.log(1 - u)
+    return AVERAGE[average](x, rate)"#,
         },
         cpp: Part {
             helpers: r#"double value(std::string average, double x, double rate) {
@@ -174,7 +179,8 @@ const PARTS: [Parts; 5] = [
     return average == "cdf" ? -std::expm1(-rate * std::fmax(x, 0)) : std::fmin(std::fmax(x, 0), 2 / rate);
 }
 "#,
-            estimator: "    double x = -rate * std::log(1 - uniform());\n    return value(average, x, rate);",
+            estimator: r#"    double x = -rate * std::log(1 - uniform());
+    return value(average, x, rate);"#,
         },
     },
     Parts {
@@ -183,24 +189,32 @@ const PARTS: [Parts; 5] = [
             helpers: r#"F = {"one": lambda x, y: 1, "squares": lambda x, y: x * x + y * y,
      "product": lambda x, y: x * y, "plane": lambda x, y: x + 2 * y}
 "#,
-            estimator: "    u, v = random.random(), random.random()\n    x, y = a + (b - a) * u, c + (d - c) * v\n    return (b - a) * F[f](x, y)",
+            estimator: r#"    u, v = random.random(), random.random()
+    x, y = a + (b - a) * u, c + (d - c) * v
+    return (b - a) * F[f](x, y)"#,
         },
         cpp: Part {
             helpers: r#"double value(std::string f, double x, double y) {
     return f == "one" ? 1 : f == "squares" ? x * x + y * y : f == "product" ? x * y : x + 2 * y;
 }
 "#,
-            estimator: "    double u = uniform(), v = uniform();\n    double x = a + (b - a) * u, y = c + (d - c) * v;\n    return (b - a) * value(f, x, y);",
+            estimator: r#"    double u = uniform(), v = uniform();
+    double x = a + (b - a) * u, y = c + (d - c) * v;
+    return (b - a) * value(f, x, y);"#,
         },
     },
     Parts {
         exercise: "reflection",
         python: Part {
-            helpers: r#"LIGHT = {"one": lambda x, y, z: 1, "cos": lambda x, y, z: z, "cos2": lambda x, y, z: z * z,
-         "half": lambda x, y, z: 2 if y >= 0 else 0, "lobe": lambda x, y, z: 4 if y >= 0 and z * z > 0.5 else 0,
+            helpers: r#"LIGHT = {"one": lambda x, y, z: 1, "cos": lambda x, y, z: z,
+         "cos2": lambda x, y, z: z * z,
+         "half": lambda x, y, z: 2 if y >= 0 else 0,
+         "lobe": lambda x, y, z: 4 if y >= 0 and z * z > 0.5 else 0,
          "grazing": lambda x, y, z: 16 if z < 0.25 else 0}
 "#,
-            estimator: "    z, phi = 1 - random.random(), 2 * math.pi * random.random()\n    x, y = math.sqrt(1 - z * z) * math.cos(phi), math.sqrt(1 - z * z) * math.sin(phi)\n    return albedo * LIGHT[light](x, y, z)",
+            estimator: r#"    z, phi = 1 - random.random(), 2 * math.pi * random.random()
+    x, y = math.sqrt(1 - z * z) * math.cos(phi), math.sqrt(1 - z * z) * math.sin(phi)
+    return albedo * LIGHT[light](x, y, z)"#,
         },
         cpp: Part {
             helpers: r#"double radiance(std::string light, double x, double y, double z) {
@@ -208,29 +222,38 @@ const PARTS: [Parts; 5] = [
     return light == "one" ? 1 : light == "cos" ? z : light == "cos2" ? z * z : z < 0.25 ? 16 : 0;
 }
 "#,
-            estimator: "    double z = uniform(), r = std::sqrt(1 - z * z), phi = 2 * std::acos(-1.0) * uniform();\n    return albedo * radiance(light, r * std::cos(phi), r * std::sin(phi), z);",
+            estimator: r#"    double z = uniform(), phi = 2 * std::acos(-1.0) * uniform();
+    double r = std::sqrt(1 - z * z);
+    return albedo * radiance(light, r * std::cos(phi), r * std::sin(phi), z);"#,
         },
     },
     Parts {
         exercise: "roulette",
         python: Part {
             helpers: "",
-            estimator: "    x = 0.5 + random.random()\n    return x if random.random() < p_rr else 0",
+            estimator: r#"    x = 0.5 + random.random()
+    return x if random.random() < p_rr else 0"#,
         },
         cpp: Part {
             helpers: "",
-            estimator: "    double x = 0.5 + uniform();\n    return uniform() < p_rr ? x : 0;",
+            estimator: r#"    double x = 0.5 + uniform();
+    return uniform() < p_rr ? x : 0;"#,
         },
     },
     Parts {
         exercise: "bounces",
         python: Part {
             helpers: "",
-            estimator: "    n = 1\n    while random.random() < p_rr:\n        n += 1\n    return n",
+            estimator: r#"    n = 1
+    while random.random() < p_rr:
+        n += 1
+    return n"#,
         },
         cpp: Part {
             helpers: "",
-            estimator: "    int n = 1;\n    while (uniform() < p_rr) n++;\n    return n;",
+            estimator: r#"    int n = 1;
+    while (uniform() < p_rr) n++;
+    return n;"#,
         },
     },
 ];

@@ -7,13 +7,15 @@ use crate::inversion::Exponential;
 use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side, Width};
 use crate::stream::Stream;
 
-/// u, −ln(1 − u) and 1 − e^(−u) to 32 digits, and the nearest u on the grid of 2⁻⁵³ with −ln(1 − u) there, by another program; see `extremes.py`.
+/// u, −ln(1 − u) and 1 − e^(−u) to 32 digits, and the nearest u on the grid of 2⁻⁵³ with −ln(1 − u) there, by
+/// another program; see `extremes.py`.
 const TRUTHS: &str = include_str!("extremes.csv");
 
 /// A way to write a function, and how it is drawn.
 type Form<'a> = (&'a str, Ink, Marker, &'a dyn Fn(f64) -> f64);
 
-/// The errors of three ways to write each of −ln(1 − u) and 1 − e^(−x), in units of the last place, against the argument.
+/// The errors of three ways to write each of −ln(1 − u) and 1 − e^(−x), in units of the last place, against
+/// the argument.
 ///
 /// ```
 /// let figure = unbiased::workbook::extremes::errors_in_ulps()?;
@@ -60,9 +62,14 @@ pub fn errors_in_ulps() -> Result<Figure> {
     Plot {
         name: "extremes_ulps",
         title: "Near 0 the obvious formulas lose all digits; ln_1p and exp_m1 lose none".into(),
-        description: "Errors in units of the last place, logarithmic, against u and x from 1e-18 to 1. −ln(1 − u) and 1 − exp(−x) are off by one part in 1e16 of 1, which for a small argument is all of it: up to 1e16 units of the last place, \
-                      where the result is 0. ln_1p and exp_m1 stay within one everywhere, the fast logarithm does where u is a whole number of 2⁻⁵³, as uniform numbers are, and so does the product with sinh, within two. Errors below 0.05 are drawn there."
-            .into(),
+        description:
+            "Errors in units of the last place, logarithmic, against u and x from 1e-18 to 1. −ln(1 \
+                      − u) and 1 − exp(−x) are off by one part in 1e16 of 1, which for a small argument is \
+                      all of it: up to 1e16 units of the last place, \
+                      where the result is 0. ln_1p and exp_m1 stay within one everywhere, the fast logarithm \
+                      does where u is a whole number of 2⁻⁵³, as uniform numbers are, and so does the \
+                      product with sinh, within two. Errors below 0.05 are drawn there."
+                .into(),
         edition: Edition::Solution,
         width: Width::Page,
         height_mm: 72.0,
@@ -96,7 +103,8 @@ fn errors(form: impl Fn(f64) -> f64, of: impl Fn([f64; 8]) -> [f64; 3]) -> Vec<[
     .collect()
 }
 
-/// How far the running mean of 10¹⁰ + U is from the exact mean of the same draws, relative to it: summed in f32, in f64, and as [`Estimate`] sums.
+/// How far the running mean of 10¹⁰ + U is from the exact mean of the same draws, relative to it: summed in
+/// f32, in f64, and as [`Estimate`] sums.
 ///
 /// ```
 /// let figure = unbiased::workbook::extremes::running_mean_errors(1)?;
@@ -156,8 +164,12 @@ pub fn running_mean_errors(seed: u64) -> Result<Figure> {
         name: "extremes_mean",
         title: "A sum that rounds drifts away from the mean".into(),
         description: format!(
-            "The error of the running mean of 10¹⁰ + U relative to the mean, both axes logarithmic, over {DRAWS} draws (seed {seed}). Summed in f32 it reaches {worst:.1} %, and is {last:.1} % at the end; in f64 it drifts too; the mean that an Estimate keeps stays at the rounding of its last digit. The thin \
-             line is the standard error, below which an error does not matter. Errors below 1e-18 are drawn there."
+            "The error of the running mean of 10¹⁰ + U relative to the mean, both axes logarithmic, over \
+             {DRAWS} draws (seed {seed}). Summed in f32 it reaches {worst:.1} %, and is {last:.1} % at the \
+             end; in f64 it drifts too; the mean that an Estimate keeps stays at the rounding of its last \
+             digit. The thin \
+             line is the standard error, below which an error does not matter. Errors below 1e-18 are drawn \
+             there."
         ),
         edition: Edition::Solution,
         width: Width::Column,
