@@ -17,7 +17,7 @@ use unbiased::plot::Figure;
 use unbiased::rectangle::{Family, Genz, Integrand, Rectangle};
 use unbiased::roulette::LightModel;
 use unbiased::trade::figures;
-use unbiased::trade::{Comparison, Measured, Nature, Place, Rival, Trade};
+use unbiased::trade::{Comparison, Measured, Nature, Ranked, Rival, Trade};
 use unbiased::workbook::{self, Answer, Appendix, Options, Table, Value};
 use unbiased::{Budget, Error, Estimator, Result, from_fn};
 
@@ -395,7 +395,7 @@ fn records(compared: &Compared) -> Vec<Answer> {
 }
 
 /// A rival's record: null is what is infinite, never reached, or not known.
-fn record(question: &str, what: &str, seed: u64, rival: &Measured, place: Option<&Place<'_>>) -> Answer {
+fn record(question: &str, what: &str, seed: u64, rival: &Measured, place: Option<&Ranked<'_>>) -> Answer {
     // 0 or 1
     let flag = |flag: bool| Value::Limit(Some(flag.into()));
     let biased = rival.nature == Nature::Biased;

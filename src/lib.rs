@@ -57,29 +57,30 @@
 //! - `notebook` (default): figures, estimates and verdicts show as pictures and HTML in Jupyter.
 //! - `png`, `pdf`: figures in those formats, too.
 
-pub mod check;
+// from the ground up
 pub mod error;
+mod numbers;
+mod float;
+mod quantile;
+pub mod fast;
+pub mod stream;
 pub mod estimate;
 pub mod estimator;
-pub mod fast;
-mod float;
-pub mod inversion;
-pub mod lambertian;
-#[cfg(feature = "notebook")]
-pub mod notebook;
-mod numbers;
-pub mod paths;
 pub mod placement;
+pub mod run;
 #[cfg(feature = "workbook")]
 pub mod plot;
-mod quantile;
-pub mod rectangle;
-pub mod roulette;
-pub mod run;
-pub mod stream;
+pub mod check;
 pub mod trade;
+pub mod inversion;
+pub mod rectangle;
+pub mod lambertian;
+pub mod roulette;
+pub mod paths;
 #[cfg(feature = "workbook")]
 pub mod workbook;
+#[cfg(feature = "notebook")]
+pub mod notebook;
 
 pub use error::{Error, Result};
 pub use estimate::Estimate;

@@ -368,7 +368,7 @@ mod tests {
     use super::*;
     use crate::lambertian::hemisphere::Hemisphere;
     use crate::lambertian::mistakes::Reflection;
-    use crate::roulette::mistakes::Bounces;
+    use crate::roulette::mistakes::NumberOfBounces;
     use crate::stream::Stream;
 
     #[test]
@@ -401,7 +401,7 @@ mod tests {
     #[test]
     fn the_three_states_of_ones_own_estimator() {
         let state = |attempt: &Attempt<'_>| check_mine(attempt).unwrap().show().plain().to_owned();
-        assert!(state(&Attempt::new(|_: &Bounces, _| f64::NAN)).starts_with("Missing"));
+        assert!(state(&Attempt::new(|_: &NumberOfBounces, _| f64::NAN)).starts_with("Missing"));
         let wrong = |p: &Reflection, rng: &mut _| p.albedo * p.light(&Hemisphere::Uniform.sample(rng));
         let said = state(&Attempt::new(wrong));
         assert!(
@@ -415,11 +415,12 @@ mod tests {
         assert!(within > 0.0 && within <= 0.06, "{within}");
         assert!(checked.show().plain().starts_with("Unbiased within"));
         // NaN later on is a fault of the estimator, not a missing one
-        let late =
-            |_: &Bounces, rng: &mut Stream| if rng.random_numbers() > 5 { f64::NAN } else { rng.uniform() };
+        let late = |_: &NumberOfBounces, rng: &mut Stream| {
+            if rng.random_numbers() > 5 { f64::NAN } else { rng.uniform() }
+        };
         let late = check_mine(&Attempt::new(late)).unwrap_err().to_string();
         assert_eq!(late, "on the probe “p_rr = 0.8” a draw is NaN: an estimate needs finite draws");
-        let panics = |_: &Bounces, _: &mut Stream| panic!("no such thing");
+        let panics = |_: &NumberOfBounces, _: &mut Stream| panic!("no such thing");
         let told = check_mine(&Attempt::new(panics)).unwrap_err().to_string();
         assert!(
             told.starts_with("on the probe “p_rr = 0.8” the estimator panics: no such thing (src"),

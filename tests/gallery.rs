@@ -28,7 +28,7 @@ use unbiased::paths::room::{BoxRoom, Face, nearest_hit, visible};
 use unbiased::paths::{FindLight, Paths};
 use unbiased::rectangle::mistakes::Integral;
 use unbiased::roulette::Roulette;
-use unbiased::roulette::mistakes::{Bounces, Wrapped};
+use unbiased::roulette::mistakes::{NumberOfBounces, Wrapped};
 use unbiased::{Budget, Error, Estimator, Run, Stream, from_fn};
 
 const DRAWS: u64 = 100_000;
@@ -40,7 +40,7 @@ fn exercises() -> [&'static Exercise; 6] {
         Reflection::exercise(),
         LightOfPaths::exercise(),
         Wrapped::exercise(),
-        Bounces::exercise(),
+        NumberOfBounces::exercise(),
     ]
 }
 
@@ -145,10 +145,13 @@ fn right() -> Vec<(&'static str, Attempt<'static>)> {
             ),
         ),
         ("no roulette", Attempt::new(|p: &Wrapped, rng| p.x(rng))),
-        ("by inversion", Attempt::new(|p: &Bounces, rng| ((1.0 - rng.uniform()).ln() / p.p_rr.ln()).floor())),
+        (
+            "by inversion",
+            Attempt::new(|p: &NumberOfBounces, rng| ((1.0 - rng.uniform()).ln() / p.p_rr.ln()).floor()),
+        ),
         (
             "by simulation",
-            Attempt::new(|p: &Bounces, rng| {
+            Attempt::new(|p: &NumberOfBounces, rng| {
                 let mut bounces = 0.0;
                 while rng.uniform() < p.p_rr {
                     bounces += 1.0;
@@ -156,7 +159,7 @@ fn right() -> Vec<(&'static str, Attempt<'static>)> {
                 bounces
             }),
         ),
-        ("closed form", Attempt::new(|p: &Bounces, _| p.p_rr / (1.0 - p.p_rr))),
+        ("closed form", Attempt::new(|p: &NumberOfBounces, _| p.p_rr / (1.0 - p.p_rr))),
         ("cosine paths, the light sampled", library(Hemisphere::Cosine)),
         ("uniform paths, the light sampled", library(Hemisphere::Uniform)),
         ("one light sample a path", Attempt::new(shared_sample)),
@@ -351,7 +354,7 @@ fn probes_have_the_right_truths() {
     assert_eq!(Integral::exercise().probes()[2].scale(), 16.0); // (2 · 2²/2)²
     close(Reflection::exercise(), &[1.6 / 3.0, 0.8, 0.61, 0.305, 0.61, 0.61, 0.61]);
     close(Wrapped::exercise(), &[1.0; 4]);
-    close(Bounces::exercise(), &[4.0, 0.25, 0.83 / 0.17, 99.0]);
+    close(NumberOfBounces::exercise(), &[4.0, 0.25, 0.83 / 0.17, 99.0]);
     // the light of one and of two bounces by pencil and by quadrature: tests/box_room.rs
     let paths = truths(LightOfPaths::exercise());
     let powers = |range: std::ops::RangeInclusive<i32>| range.map(|k| 0.8f64.powi(k)).sum::<f64>();
@@ -457,11 +460,11 @@ fn ratios_agree_with_the_known_table() {
         ] {
             known(Wrapped::exercise(), id, &[index], &[ratio]);
         }
-        known(Bounces::exercise(), "coins", &[index], &[1.0 / p]);
-        known(Bounces::exercise(), "exchanged", &[index], &[((1.0 - p) / p).powi(2)]);
+        known(NumberOfBounces::exercise(), "coins", &[index], &[1.0 / p]);
+        known(NumberOfBounces::exercise(), "exchanged", &[index], &[((1.0 - p) / p).powi(2)]);
     }
-    known(Bounces::exercise(), "exchanged-coins", &[0], &[1.25 / 4.0]);
-    known(Bounces::exercise(), "at-most-95", &[3], &[19.0 / 99.0]);
+    known(NumberOfBounces::exercise(), "exchanged-coins", &[0], &[1.25 / 4.0]);
+    known(NumberOfBounces::exercise(), "at-most-95", &[3], &[19.0 / 99.0]);
     // one and two bounces in the odd room, two on the sheet, three in a furnace of 0.7
     for (id, once, twice) in [
         ("no-area", 0.3906, 0.3906), // 1/2.56
@@ -672,7 +675,8 @@ fn a_constant_times_a_mistake_is_named() {
 
 #[test]
 fn a_constant_alone_is_named_and_an_unknown_mistake_is_not() {
-    let doubled = Attempt::new(|p: &Bounces, rng| 2.0 * ((1.0 - rng.uniform()).ln() / p.p_rr.ln()).floor());
+    let doubled =
+        Attempt::new(|p: &NumberOfBounces, rng| 2.0 * ((1.0 - rng.uniform()).ln() / p.p_rr.ln()).floor());
     assert_eq!(names(&diagnosed(&doubled, DRAWS, 3000)), ["a factor of 2 too much"]);
     let attempts = [
         Attempt::new(|p: &Samples, rng| -1.1 * (1.0 - rng.uniform()).ln() / p.rate),
@@ -723,7 +727,9 @@ fn a_counterexample_can_be_worked_out_by_hand() {
         of("For instance on “L = cos θ, ρ = 0.8”, at u = ½, v = ½: yours is 0.8000, right is 0.4000.")
     );
     assert_eq!(
-        shown(Attempt::new(|p: &Bounces, rng| ((1.0 - rng.uniform()).ln() / p.p_rr.ln()).floor() + 1.0)),
+        shown(Attempt::new(
+            |p: &NumberOfBounces, rng| ((1.0 - rng.uniform()).ln() / p.p_rr.ln()).floor() + 1.0
+        )),
         of("For instance on “p_rr = 0.8”, at u = ½: yours is 4.0000, right is 3.0000.")
     );
     // the numbers are used in another way, or in another number: nothing is said
@@ -849,7 +855,7 @@ fn skewness_is_known() {
 
 #[test]
 fn bad_input_is_an_error() {
-    let attempt = Attempt::new(|_: &Bounces, rng| rng.uniform());
+    let attempt = Attempt::new(|_: &NumberOfBounces, rng| rng.uniform());
     let foreign = &Wrapped::exercise().probes()[0];
     let error = attempt.on(foreign).err().unwrap().to_string();
     assert_eq!(error, "an attempt at “number of bounces” cannot be tried on “X = ½ + U, p_rr = 0.8”");
@@ -874,10 +880,10 @@ fn bad_input_is_an_error() {
 /// A constant attempt has no variance: rounding is the error, and f32's is forgiven.
 #[test]
 fn estimators_without_variance_are_diagnosed() {
-    let exact = Attempt::new(|p: &Bounces, _| p.p_rr / (1.0 - p.p_rr) * (1.0 + 1e-7));
+    let exact = Attempt::new(|p: &NumberOfBounces, _| p.p_rr / (1.0 - p.p_rr) * (1.0 + 1e-7));
     assert_eq!(diagnosed(&exact, 100, 1).finding(), Finding::NothingWrong);
-    let trials = Attempt::new(|p: &Bounces, _| 1.0 / (1.0 - p.p_rr));
+    let trials = Attempt::new(|p: &NumberOfBounces, _| 1.0 / (1.0 - p.p_rr));
     assert_eq!(names(&diagnosed(&trials, 100, 1)), ["a factor of 1/p_rr too much"]);
-    let other = Attempt::new(|p: &Bounces, _| 1.37 / (1.0 - p.p_rr));
+    let other = Attempt::new(|p: &NumberOfBounces, _| 1.37 / (1.0 - p.p_rr));
     assert_eq!(diagnosed(&other, 100, 1).finding(), Finding::Unclear);
 }

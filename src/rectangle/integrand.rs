@@ -160,8 +160,8 @@ impl Integrand {
     /// ```
     /// use unbiased::rectangle::{Integrand, Rectangle};
     ///
-    /// // 32 values each of x and y: a gain for the bell, although small for 32 times the evaluations, and none
-    /// // for the paraboloid
+    /// // 32 values each of x and y: a gain for the bell, small for 32 times the evaluations, and none for
+    /// // the paraboloid
     /// let square = Rectangle::WORKSHEET;
     /// let variances = [(Integrand::Gaussian, 0.4826, 0.3732), (Integrand::Paraboloid, 22.756, 22.756)];
     /// for (f, independent, all_pairs) in variances {

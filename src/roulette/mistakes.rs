@@ -16,7 +16,7 @@ pub struct Wrapped {
 
 /// The number of bounces that roulette allows: the estimator's draw is one N.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bounces {
+pub struct NumberOfBounces {
     /// The continuation probability p_rr.
     pub p_rr: f64,
 }
@@ -33,16 +33,21 @@ impl Wrapped {
 const CHANCES: [f64; 4] = [0.8, 0.2, 0.83, 0.99];
 
 static WRAPPED: [Wrapped; 4] = wrapped();
-static BOUNCES: [Bounces; 4] = bounces();
+static BOUNCES: [NumberOfBounces; 4] = bounces();
 
 const fn wrapped() -> [Wrapped; 4] {
     let [a, b, c, d] = CHANCES;
     [Wrapped { p_rr: a }, Wrapped { p_rr: b }, Wrapped { p_rr: c }, Wrapped { p_rr: d }]
 }
 
-const fn bounces() -> [Bounces; 4] {
+const fn bounces() -> [NumberOfBounces; 4] {
     let [a, b, c, d] = CHANCES;
-    [Bounces { p_rr: a }, Bounces { p_rr: b }, Bounces { p_rr: c }, Bounces { p_rr: d }]
+    [
+        NumberOfBounces { p_rr: a },
+        NumberOfBounces { p_rr: b },
+        NumberOfBounces { p_rr: c },
+        NumberOfBounces { p_rr: d },
+    ]
 }
 
 impl Problem for Wrapped {
@@ -75,10 +80,10 @@ impl Problem for Wrapped {
     }
 }
 
-impl Problem for Bounces {
+impl Problem for NumberOfBounces {
     fn exercise() -> &'static Exercise {
         static EXERCISE: LazyLock<Exercise> = LazyLock::new(|| {
-            let right = |p: &Bounces, rng: &mut Stream| right_count(p.p_rr, 1.0 - rng.uniform());
+            let right = |p: &NumberOfBounces, rng: &mut Stream| right_count(p.p_rr, 1.0 - rng.uniform());
             Exercise::new(ABOUT_BOUNCES, &[right], bounce_mistakes())
         });
         &EXERCISE
@@ -107,7 +112,7 @@ impl fmt::Display for Wrapped {
     }
 }
 
-impl fmt::Display for Bounces {
+impl fmt::Display for NumberOfBounces {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "p_rr = {}", self.p_rr)
     }
@@ -206,7 +211,7 @@ fn right_count(p: f64, u: f64) -> f64 {
 /// Bounces whose number is a function of p and one U in (0, 1].
 fn count([id, name, formula, mend]: [Text; 4], n: fn(f64, f64) -> f64) -> Mistake {
     let words = Words { id, question: "5.1", name, formula, mend };
-    Mistake::new(words, move |p: &Bounces, rng| n(p.p_rr, 1.0 - rng.uniform()))
+    Mistake::new(words, move |p: &NumberOfBounces, rng| n(p.p_rr, 1.0 - rng.uniform()))
 }
 
 #[rustfmt::skip] // a list to be read

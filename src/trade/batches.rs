@@ -322,9 +322,9 @@ mod tests {
     }
 
     /// At 16,384 draws a tail P(X > x) ~ x⁻² is missed once in some 400 sets, so more than 5 of 50 are with
-    /// probability 4e-9; heavier ones are missed less often. At 1,024 draws two thirds are found, of 1/x, where
-    /// α = 1, 98 in a hundred. An average of 64² pairs has its tail behind a near-normal bulk: 1/r by all pairs
-    /// is found once in 40 sets of 1,024, 15 times of 16,384, and always of 262,144.
+    /// probability 4e-9; heavier ones are missed less often. At 1,024 draws two thirds are found, of 1/x,
+    /// where α = 1, 98 in a hundred. An average of 64² pairs has its tail behind a near-normal bulk: 1/r by
+    /// all pairs is found once in 40 sets of 1,024, 15 times of 16,384, and always of 262,144.
     #[test]
     fn infinite_variances_are_marked() {
         let square = Rectangle::WORKSHEET;

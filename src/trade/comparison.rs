@@ -21,7 +21,7 @@ pub struct Comparison {
 
 /// A rival's place among those without bias.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place<'a> {
+pub struct Ranked<'a> {
     /// The rival.
     pub rival: &'a Measured,
     /// 1 + the number of rivals that are really better. Those of rank 1 are not told apart from the best.
@@ -56,7 +56,7 @@ impl Comparison {
     /// assert!(ranking[2].rival.name.starts_with("a hundred") && ranking[2].of_the_best < 0.5);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
-    pub fn ranking(&self) -> Vec<Place<'_>> {
+    pub fn ranking(&self) -> Vec<Ranked<'_>> {
         let mut order: Vec<&Measured> =
             self.rivals.iter().filter(|rival| rival.nature != Nature::Biased).collect();
         order.sort_by(|a, b| {
@@ -64,7 +64,7 @@ impl Comparison {
                 || if a.varies() { std::cmp::Ordering::Equal } else { a.seconds.total_cmp(&b.seconds) };
             b.efficiency().total_cmp(&a.efficiency()).then_with(by_time)
         });
-        let mut places: Vec<Place<'_>> = Vec::new();
+        let mut places: Vec<Ranked<'_>> = Vec::new();
         for &rival in &order {
             let better = order.iter().filter(|other| is_really_better(other, rival)).count();
             let set_apart = places.last().is_none_or(|before| is_really_better(before.rival, rival));
@@ -74,7 +74,7 @@ impl Comparison {
                 (false, false) => best.seconds / rival.seconds,
                 _ => 0.0,
             };
-            places.push(Place { rival, rank: 1 + better, of_the_best, set_apart });
+            places.push(Ranked { rival, rank: 1 + better, of_the_best, set_apart });
         }
         places
     }

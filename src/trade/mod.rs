@@ -20,7 +20,7 @@ pub mod figures;
 mod measured;
 mod shown;
 
-pub use comparison::{Comparison, Place};
+pub use comparison::{Comparison, Ranked};
 pub use measured::{Crossing, Measured, Nature, Reach};
 
 use crate::error::{Result, require};

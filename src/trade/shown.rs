@@ -5,7 +5,7 @@ use std::fmt;
 use serde::ser::{SerializeMap, SerializeSeq, SerializeStruct};
 use serde::{Serialize, Serializer};
 
-use super::comparison::{Comparison, Place};
+use super::comparison::{Comparison, Ranked};
 use super::measured::{Crossing, Measured, Nature, Reach};
 use crate::numbers::{duration, plus_minus, two_digits, unit};
 
@@ -69,7 +69,7 @@ impl Comparison {
     }
 
     /// The rivals without bias by rank, then the biased ones, each with what is to be said of it.
-    pub(crate) fn remarked(&self) -> Vec<(&Measured, Option<Place<'_>>, String)> {
+    pub(crate) fn remarked(&self) -> Vec<(&Measured, Option<Ranked<'_>>, String)> {
         let ranked = self.ranking().into_iter().map(|place| (place.rival, Some(place)));
         let biased =
             self.rivals.iter().filter(|rival| rival.nature == Nature::Biased).map(|rival| (rival, None));
@@ -194,14 +194,14 @@ const NAMES: [&str; 31] = [
 /// A cell a column.
 type Record<'a> = [Cell<'a>; 31];
 
-fn record<'a>(comparison: &Comparison, rival: &'a Measured, place: Option<&Place<'_>>) -> Record<'a> {
+fn record<'a>(comparison: &Comparison, rival: &'a Measured, place: Option<&Ranked<'_>>) -> Record<'a> {
     let finite = rival.nature != Nature::InfiniteVariance;
     let biased = rival.nature == Nature::Biased;
     let number = |value: f64| if value.is_nan() { Cell::Nothing } else { Cell::Number(value) };
     // an error bar made of a variance that is infinite is none
     let with_variance = |value: f64| number(if finite { value } else { f64::INFINITY });
     let of_bias = |cell: Cell<'a>| if biased { cell } else { Cell::Nothing };
-    let of_place = |cell: fn(&Place<'_>) -> Cell<'a>| place.map_or(Cell::Nothing, cell);
+    let of_place = |cell: fn(&Ranked<'_>) -> Cell<'a>| place.map_or(Cell::Nothing, cell);
     let reach = |error: f64| match rival.seconds_to(error) {
         Reach::After(seconds) => number(seconds),
         Reach::AtLeast(_) => Cell::Nothing,

@@ -130,10 +130,10 @@ fn decoded(line: &mut Vec<u8>) -> Option<&str> {
 mod tests {
     use super::*;
     use crate::check::Problem;
-    use crate::roulette::mistakes::Bounces;
+    use crate::roulette::mistakes::NumberOfBounces;
 
     fn probes() -> Vec<&'static Probe> {
-        Bounces::exercise().probes_of("5.1")
+        NumberOfBounces::exercise().probes_of("5.1")
     }
 
     fn tallied(text: &[u8], probe: Option<usize>) -> std::result::Result<Vec<(usize, u64, f64)>, String> {

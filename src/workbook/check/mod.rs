@@ -38,7 +38,7 @@ pub fn exercises() -> [&'static Exercise; 6] {
         lambertian::mistakes::Reflection::exercise(),
         paths::mistakes::LightOfPaths::exercise(),
         roulette::mistakes::Wrapped::exercise(),
-        roulette::mistakes::Bounces::exercise(),
+        roulette::mistakes::NumberOfBounces::exercise(),
     ]
 }
 
