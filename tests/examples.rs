@@ -506,10 +506,12 @@ fn help_lists_every_option() {
             let output = run(example, &[flag]);
             let text = String::from_utf8(output.stdout).unwrap();
             assert!(output.status.success());
-            let common = ["--draws", "--error", "--seconds", "--seed", "--threads", "--out", "--json"];
-            for option in common.iter().chain(&["--edition", "--hint"]).chain(own) {
-                assert!(text.contains(option), "{example}: {option}");
-            }
+            let listed: BTreeSet<_> = options(&text, "--").collect();
+            let common: BTreeSet<_> = options(include_str!("../README.md"), "| `--").collect();
+            assert!(common.len() >= 14 && common.is_subset(&listed), "{example}: {listed:?}");
+            let of_questions: BTreeSet<_> = listed.difference(&common).copied().collect();
+            assert!(own.iter().all(|option| of_questions.contains(option)), "{example}: {of_questions:?}");
+            assert!(example == "worksheet" || of_questions.len() == own.len(), "{of_questions:?}");
         }
     }
     // those beside the questions list what they take, and nothing else
@@ -518,9 +520,15 @@ fn help_lists_every_option() {
         ("extremes", &["--seed", "--out", "--json"]),
     ] {
         let text = String::from_utf8(run(example, &["--help"]).stdout).unwrap();
-        let options = text.lines().filter_map(|line| line.trim().split(' ').next());
-        assert_eq!(options.filter(|word| word.starts_with("--")).collect::<Vec<_>>(), listed);
+        assert_eq!(options(&text, "--").collect::<Vec<_>>(), listed);
     }
+}
+
+/// The options that lines of a text begin with, after this much.
+fn options<'a>(text: &'a str, before: &'a str) -> impl Iterator<Item = &'a str> {
+    let before = before.strip_suffix("--").unwrap();
+    let lines = text.lines().filter_map(move |line| line.trim().strip_prefix(before));
+    lines.filter(|rest| rest.starts_with("--")).filter_map(|rest| rest.split([' ', '`']).next())
 }
 
 /// A folder that no other test has, of those that run beside this one.
