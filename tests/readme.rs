@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use unbiased::workbook::{exercises, questions};
+use unbiased::workbook::{Options, exercises, questions};
 
 const README: &str = include_str!("../README.md");
 
@@ -37,7 +37,8 @@ fn links_lead_somewhere() {
 fn the_table_is_that_of_the_questions_and_has_every_figure() {
     let mut linked = BTreeSet::new();
     for question in questions() {
-        let row = format!("| {} {} |", question.id, question.title);
+        let title = question.at(&Options::default()).unwrap().title;
+        let row = format!("| {} {title} |", question.id);
         let row = README.lines().find(|line| line.starts_with(&row)).unwrap_or_else(|| panic!("{row}"));
         let [example, topic, figures @ ..] = &links(row).collect::<Vec<_>>()[..] else { panic!("{row}") };
         assert_eq!(*example, format!("examples/{}.rs", question.example));
@@ -45,7 +46,8 @@ fn the_table_is_that_of_the_questions_and_has_every_figure() {
         linked.extend(figures.iter().map(|figure| figure.trim_start_matches("figures/").to_owned()));
     }
     // those of the appendices belong to no question
-    let of_questions = |name: &String| name.ends_with(".svg") && name.starts_with(|c: char| c.is_ascii_digit());
+    let of_questions =
+        |name: &String| name.ends_with(".svg") && name.starts_with(|c: char| c.is_ascii_digit());
     let files = fs::read_dir(root().join("figures")).unwrap();
     let drawn = files.map(|file| file.unwrap().file_name().into_string().unwrap());
     // what is drawn of seconds is on no two machines the same, and is not committed
