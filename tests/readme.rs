@@ -1,6 +1,7 @@
-//! Is the README true? Its questions, figures, options and counts are the workbook's, and its links lead somewhere.
+//! Is the README true? Its questions, figures and counts are the workbook's, and its links lead somewhere.
 //!
-//! Its Rust code runs as a doctest of the library. Nothing here is random.
+//! Its options and quotes are held to what is printed in `examples.rs`; its Rust code is a doctest of the
+//! library. Nothing here is random.
 #![cfg(feature = "workbook")]
 
 use std::collections::BTreeSet;
