@@ -508,10 +508,12 @@ fn help_lists_every_option() {
             let output = run(example, &[flag]);
             let text = String::from_utf8(output.stdout).unwrap();
             assert!(output.status.success());
-            let common = ["--draws", "--error", "--seconds", "--seed", "--threads", "--out", "--json"];
-            for option in common.iter().chain(&["--edition", "--hint"]).chain(own) {
-                assert!(text.contains(option), "{example}: {option}");
-            }
+            let listed: BTreeSet<_> = options(&text, "    ").collect();
+            let common: BTreeSet<_> = options(include_str!("../README.md"), "| `").collect();
+            assert!(!common.is_empty() && common.is_subset(&listed), "{example}: {common:?}, {listed:?}");
+            let of_questions: BTreeSet<_> = listed.difference(&common).copied().collect();
+            assert!(own.iter().all(|option| of_questions.contains(option)), "{example}: {of_questions:?}");
+            assert!(example == "worksheet" || of_questions.len() == own.len(), "{of_questions:?}");
         }
     }
     // those beside the questions list what they take, and nothing else
@@ -520,8 +522,28 @@ fn help_lists_every_option() {
         ("extremes", &["--seed", "--out", "--json"]),
     ] {
         let text = String::from_utf8(run(example, &["--help"]).stdout).unwrap();
-        let options = text.lines().filter_map(|line| line.trim().split(' ').next());
-        assert_eq!(options.filter(|word| word.starts_with("--")).collect::<Vec<_>>(), listed);
+        assert_eq!(options(&text, "    ").collect::<Vec<_>>(), listed);
+    }
+}
+
+/// The options that lines of a text begin with, after this.
+fn options<'a>(text: &'a str, before: &'a str) -> impl Iterator<Item = &'a str> {
+    let lines = text.lines().filter_map(move |line| line.strip_prefix(before));
+    lines.filter(|rest| rest.starts_with("--")).filter_map(|rest| rest.split([' ', '`']).next())
+}
+
+/// What the README shows of a run is what the commands beside it print.
+#[test]
+fn the_readme_quotes_what_is_printed() {
+    let out = folder_of_its_own();
+    let sky = |draws| run("q3_2_uniform_sky", &["--draws", draws, "--out", out.to_str().unwrap()]);
+    let printed = [run("check_mine", &[]), sky("10000"), sky("1000000")].map(|output| output.stdout);
+    let printed = printed.map(|bytes| String::from_utf8(bytes).unwrap()).concat();
+    let quotes = include_str!("../README.md").split("```text\n").skip(1);
+    let quotes: Vec<&str> = quotes.filter_map(|rest| Some(rest.split_once("```")?.0)).collect();
+    assert!(quotes.len() >= 3);
+    for line in quotes.iter().flat_map(|quote| quote.lines()) {
+        assert!(printed.lines().any(|of| of == line), "{line}");
     }
 }
 
