@@ -6,7 +6,7 @@
 use unbiased::rectangle::figures;
 use unbiased::rectangle::{Integrand, Rectangle};
 use unbiased::workbook::{self, Row, Sheet};
-use unbiased::{Result, f_over_p, from_fn};
+use unbiased::{Doubt, Result, f_over_p, from_fn};
 
 /// The six functions, the better placed points, the mistakes.
 pub fn answer(sheet: &Sheet) -> Result<()> {
@@ -29,7 +29,9 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
             area * f.at(x, y)
         });
         let infinite = f.variance(&rectangle) == Some(f64::INFINITY);
-        row(sheet, "", f, &rectangle).infinite_variance_if(infinite).estimate(&estimator)?;
+        row(sheet, "", f, &rectangle)
+            .doubt(infinite.then_some(Doubt::InfiniteVariance))
+            .estimate(&estimator)?;
     }
 
     let general = f_over_p(|&[x, y]: &[f64; 2]| bell(x, y), rectangle);

@@ -9,7 +9,7 @@ use unbiased::lambertian::hemisphere::{Direction, Hemisphere};
 use unbiased::lambertian::{CosinePower, Lambertian, Light};
 use unbiased::placement::sobol;
 use unbiased::workbook::{self, Sheet};
-use unbiased::{Result, f_over_p, from_fn};
+use unbiased::{Doubt, Result, f_over_p, from_fn};
 
 /// The general form, the simplified one, better placed numbers, the mistakes.
 pub fn answer(sheet: &Sheet) -> Result<()> {
@@ -31,7 +31,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
 
     let (truth, seed) = (radiance * sky.reflected(cube), sheet.seed());
     let infinite = sky.variance(cube, Hemisphere::Uniform).is_infinite();
-    let row = |what| sheet.row(what).truth(truth).infinite_variance_if(infinite);
+    let row = |what| sheet.row(what).truth(truth).doubt(infinite.then_some(Doubt::InfiniteVariance));
     row("reflected radiance, general form").estimate(&general)?;
     sheet.figure(|| figures::directions(Hemisphere::Uniform, 600, seed))?;
     row("reflected radiance, simplified").estimate(&simplified)?;

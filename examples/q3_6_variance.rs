@@ -8,7 +8,7 @@ use unbiased::lambertian::figures;
 use unbiased::lambertian::hemisphere::Hemisphere::{self, Cosine, Uniform};
 use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
 use unbiased::workbook::{self, Row, Sheet};
-use unbiased::{Estimator, Result, from_fn};
+use unbiased::{Doubt, Estimator, Result, from_fn};
 
 /// Both variances under cos^a θ, and under a ring of light at the horizon.
 pub fn answer(sheet: &Sheet) -> Result<()> {
@@ -25,7 +25,10 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
         for (what, density, least) in
             [("variance, uniform directions", Uniform, -1.25), ("variance, cosine directions", Cosine, -0.5)]
         {
-            let row = sheet.row(what).parameter("a", sky.a()).infinite_variance_if(sky.a() <= least);
+            let row = sheet
+                .row(what)
+                .parameter("a", sky.a())
+                .doubt((sky.a() <= least).then_some(Doubt::InfiniteVariance));
             measured(row, cube, sky, density)?;
         }
     }

@@ -14,10 +14,6 @@ use unbiased::placement::sobol;
 use unbiased::workbook::{self, Sheet};
 use unbiased::{Estimator, Result};
 
-#[path = "section4/dark.rs"]
-#[allow(clippy::duplicate_mod)] // the worksheet takes it in with each of its examples
-mod dark;
-
 /// The light of exactly K bounces and of up to K, or of all.
 pub fn answer(sheet: &Sheet) -> Result<()> {
     let room = BoxRoom::new(sheet.scene())?;
@@ -29,12 +25,10 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     sheet.figure(|| figures::radiance_by_bounces(&room, seed))?;
     sheet.figure(|| figures::path_errors(&room, seed))?;
 
-    let add = |what: &str, estimator: &dyn Estimator, truth: Option<f64>, caution: Option<String>| {
+    let add = |what: &str, estimator: &dyn Estimator, truth: Option<f64>| {
         // a set of points is one draw
         let draws = if what.contains("Sobol") { 4000 } else { 1_000_000 };
-        let row = sheet.row(what).truth(truth).careful(caution).draws(draws).estimate(estimator)?;
-        row.doubted(dark::none_found(&room, truth));
-        Ok(())
+        sheet.row(what).truth(truth).draws(draws).estimate(estimator).map(|_| ())
     };
     let Some(k) = bounces else {
         for (what, bounces) in [
@@ -43,7 +37,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
             ("all light, roulette with q = 0.5", Bounces::All(0.5)),
         ] {
             let paths = Paths::new(room, bounces, Cosine, FindLight::BySampling)?;
-            add(what, &paths, None, paths.caution())?;
+            add(what, &paths, None)?;
         }
         return Ok(());
     };
@@ -52,14 +46,14 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     if k == 2 && exact[1].is_some() {
         // the sheet's estimator as it stands, with L_o(p_j) known
         let known = reflected(room, Cosine, |p_j, _| room.direct(p_j));
-        add("K-bounce part, L_o(p_j) known", &known, truth, None)?;
-        add("K-bounce part, L_o(p_j) known, sets of 256 Sobol points", &sobol(&known, 256)?, truth, None)?;
+        add("K-bounce part, L_o(p_j) known", &known, truth)?;
+        add("K-bounce part, L_o(p_j) known, sets of 256 Sobol points", &sobol(&known, 256)?, truth)?;
     }
     if k > 0 {
         let paths = Paths::new(room, Bounces::Exactly(k - 1), Cosine, FindLight::BySampling)?;
         let estimated = reflected(room, Uniform, |p_j, rng| paths.light_from(p_j, rng));
-        let whole = Paths::new(room, Bounces::Exactly(k), Cosine, FindLight::BySampling)?;
-        add("K-bounce part, L_o(p_j) estimated", &estimated, truth, whole.caution())?;
+        let doubt = Paths::new(room, Bounces::Exactly(k), Cosine, FindLight::BySampling)?.doubt();
+        sheet.row("K-bounce part, L_o(p_j) estimated").truth(truth).doubt(doubt).estimate(&estimated)?;
     }
     for (what, directions, light) in [
         ("K-bounce part, light sampled, cosine directions", Cosine, FindLight::BySampling),
@@ -68,13 +62,13 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
         ("K-bounce part, light by chance, uniform directions", Uniform, FindLight::ByChance),
     ] {
         let paths = Paths::new(room, Bounces::Exactly(k), directions, light)?;
-        add(what, &paths, truth, paths.caution())?;
+        add(what, &paths, truth)?;
     }
     let all_known = exact.iter().take(k as usize).try_fold(0.0, |sum, part| Some(sum + (*part)?));
     let truth = if k <= 2 { all_known } else { None };
     let paths = Paths::new(room, Bounces::UpTo(k), Cosine, FindLight::BySampling)?;
-    add("cumulative", &paths, truth, paths.caution())?;
-    add("cumulative, sets of 256 Sobol points", &sobol(paths, 256)?, truth, paths.caution())
+    add("cumulative", &paths, truth)?;
+    add("cumulative, sets of 256 Sobol points", &sobol(paths, 256)?, truth)
 }
 
 #[allow(dead_code)] // the worksheet takes this file in as a module

@@ -4,9 +4,9 @@
 //! p_rr ≤ ρ²:
 //! its estimate is unbiased and usually too dark.
 
-use unbiased::Result;
 use unbiased::roulette::{LightModel, Roulette};
 use unbiased::workbook::{self, Sheet};
+use unbiased::{Estimator, Result};
 
 /// The number of bounces, and the light of so few.
 pub fn answer(sheet: &Sheet) -> Result<()> {
@@ -19,10 +19,9 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
 
     sheet.row("E[N], coin by coin").truth(law.mean()).takes(coins).estimate(&coin_by_coin)?;
     sheet.row("E[N], in one step").truth(law.mean()).estimate(&in_one_step)?;
-    let infinite = paths.variance().is_infinite();
-    let light = sheet.row("light along such paths").truth(model.mean()).infinite_variance_if(infinite);
-    let light = light.draws(1000).takes(coins).estimate(&paths)?;
-    if infinite {
+    let light = sheet.row("light along such paths").truth(model.mean()).draws(1000).takes(coins);
+    let light = light.estimate(&paths)?;
+    if paths.doubt().is_some() {
         light.note(INFINITE);
     }
     Ok(())

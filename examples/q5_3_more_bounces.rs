@@ -30,9 +30,8 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
 
     let ended = "light, paths ended by roulette";
     let with_roulette = |what, p_rr: f64, estimator: &dyn Estimator, draws, note: Option<String>| {
-        let infinite = model.roulette(p_rr)?.variance().is_infinite();
         let row = sheet.row(what).parameter("p_rr", p_rr).truth(model.mean()).takes(1.0 / (1.0 - p_rr));
-        let row = row.infinite_variance_if(infinite).draws(draws).estimate(estimator)?;
+        let row = row.draws(draws).estimate(estimator)?;
         note.map(|note| row.note(note));
         Ok(())
     };

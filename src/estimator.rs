@@ -3,6 +3,7 @@
 
 use pulp::NullaryFnOnce;
 
+use crate::doubt::Doubt;
 use crate::fast::widest;
 use crate::stream::{LANES, Stream};
 
@@ -35,6 +36,11 @@ pub trait Estimator: Sync {
     fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
         rng.one_at_a_time(draws, |rng| self.draw(rng));
     }
+
+    /// Why error bars made of its draws are not to be trusted, where its parameters tell.
+    fn doubt(&self) -> Option<Doubt> {
+        None
+    }
 }
 
 impl<E: Estimator + ?Sized> Estimator for &E {
@@ -44,6 +50,10 @@ impl<E: Estimator + ?Sized> Estimator for &E {
 
     fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
         (**self).fill(rng, draws);
+    }
+
+    fn doubt(&self) -> Option<Doubt> {
+        (**self).doubt()
     }
 }
 
@@ -57,6 +67,10 @@ where
 
     fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
         (**self).fill(rng, draws);
+    }
+
+    fn doubt(&self) -> Option<Doubt> {
+        (**self).doubt()
     }
 }
 

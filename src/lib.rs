@@ -65,6 +65,7 @@ mod quantile;
 pub mod fast;
 pub mod stream;
 pub mod estimate;
+mod doubt;
 pub mod estimator;
 pub mod placement;
 pub mod run;
@@ -82,6 +83,7 @@ pub mod workbook;
 #[cfg(feature = "notebook")]
 pub mod notebook;
 
+pub use doubt::Doubt;
 pub use error::{Error, Result};
 pub use estimate::Estimate;
 pub use estimator::{Density, Estimator, f_over_p, from_fn, from_uniforms};

@@ -35,6 +35,7 @@
 //! # Ok::<(), unbiased::Error>(())
 //! ```
 
+use crate::doubt::Doubt;
 use crate::error::{Result, require_count};
 use crate::estimate::{Estimate, SLICE};
 use crate::estimator::Estimator;
@@ -111,5 +112,9 @@ impl<E: Estimator> Estimator for Placed<E> {
         }
         rng.count(&points);
         estimate.mean()
+    }
+
+    fn doubt(&self) -> Option<Doubt> {
+        self.estimator.doubt()
     }
 }

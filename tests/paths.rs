@@ -887,7 +887,7 @@ fn ways_agree(scene: Scene, group: &[Bounces], seed: u64, truth: Option<f64>) {
         for way in WAYS {
             let (seed, what) = (seed + 2 * found.len() as u64, format!("{bounces:?} {way:?}"));
             let estimator = paths(scene, *bounces, way);
-            assert_eq!(estimator.caution(), None);
+            assert_eq!(estimator.doubt(), None);
             let pilot = plain(&estimator, 1_000_000, seed);
             // those that vary little know more than the others, at little cost
             let little = way.0 == Cosine && estimator.most_bounces() <= 64;
@@ -1052,7 +1052,7 @@ fn a_caution_says_when_the_variance_may_be_infinite() {
         light_half_width,
         ..Scene::default()
     };
-    let says = |scene, bounces, way| paths(scene, bounces, way).caution();
+    let says = |scene, bounces, way| paths(scene, bounces, way).doubt().map(|doubt| doubt.to_string());
     // q against ρ² and (4/3)ρ² of the larger albedo, whichever it is
     for scene in [with(0.5, 0.8, 0.5), with(0.8, 0.1, 0.5)] {
         for light in FindLight::ALL {

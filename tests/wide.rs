@@ -81,7 +81,7 @@ fn all_light_in_the_furnace_side_by_side() {
                 }
                 n += 1;
                 let paths = paths(furnace, bounces, directions, FindLight::ByChance);
-                assert_eq!(paths.caution(), None);
+                assert_eq!(paths.doubt(), None);
                 let found = estimate(&paths, Budget::Draws(1_000_000), common::seed(890 + n)).unwrap();
                 let (off, std_error) = ((found.mean() - truth).abs(), found.std_error().unwrap());
                 println!("{albedo}, {bounces:?}, {directions:?}: {found}, z = {:.1}", off / std_error);

@@ -166,7 +166,7 @@ pub fn occluded_fraction(draws: u64, seed: u64) -> Result<Figure> {
 /// samples near them weigh without bound.
 fn find_light(room: &BoxRoom) -> Result<FindLight> {
     let sampled = Paths::new(*room, Bounces::UpTo(2), Cosine, FindLight::BySampling)?;
-    Ok(if sampled.caution().is_none() { FindLight::BySampling } else { FindLight::ByChance })
+    Ok(if sampled.doubt().is_none() { FindLight::BySampling } else { FindLight::ByChance })
 }
 
 /// 4.3: the light by the number of bounces, exact where it is known, and else from ten million paths each.
@@ -337,7 +337,7 @@ fn reference(paths: &Paths, seed: u64) -> Result<[f64; 2]> {
 /// against rays, which are the same on every machine, and once against this machine's seconds. None where p
 /// gets no light.
 ///
-/// Ways whose variance may be infinite, [`Paths::caution`], are left out; and so is all light where an albedo
+/// Ways whose variance may be infinite, [`Estimator::doubt`], are left out; and so is all light where an albedo
 /// is too large for absorption to end a path.
 ///
 /// ```no_run
@@ -371,7 +371,7 @@ pub fn path_errors(room: &BoxRoom, seed: u64) -> Result<Vec<Figure>> {
         ("sampled, cosine", Ink::Blue, Marker::Disc, Cosine, FindLight::BySampling),
     ] {
         let paths = Paths::new(*room, Bounces::UpTo(2), directions, light)?;
-        if paths.caution().is_none() {
+        if paths.doubt().is_none() {
             ways.push(Series::measure((label, ink, marker), &paths, two, seed)?);
         }
     }
@@ -386,7 +386,7 @@ pub fn path_errors(room: &BoxRoom, seed: u64) -> Result<Vec<Figure>> {
             ("roulette by throughput", Ink::Blue, Marker::Disc, Bounces::AllByThroughput),
         ] {
             let paths = paths(bounces)?;
-            if paths.caution().is_none() {
+            if paths.doubt().is_none() {
                 let series = Series::measure((label, ink, marker), &paths, all[0], seed)?;
                 let truncated = matches!(bounces, Bounces::UpTo(_));
                 endings.push(if truncated { series.biased(reference(&paths, seed)?, all) } else { series });

@@ -34,6 +34,7 @@
 use glam::DVec3;
 use rand::distr::Distribution;
 
+use crate::doubt::Doubt;
 use crate::error::{Result, require, require_count};
 use crate::estimator::{Density, Estimator, from_fn};
 use crate::fast::Real;
@@ -253,35 +254,8 @@ impl Paths {
         self.counted[1]
     }
 
-    /// Why error bars are not to be trusted, if they are not: the variance may be infinite, or so few paths
-    /// hold most of it that a run of a million does not meet them.
-    ///
-    /// A path's squared throughput grows by E\[(ρ cos θ/(π p(ω)))²\]/q a bounce, times the q of going on:
-    /// ρ²/q with cosine directions, (4/3)ρ²/q with uniform ones. It must stay below 1 for the largest albedo
-    /// ρ to be safe. And light samples near the light's edge have an infinite variance where the light
-    /// touches a wall.
-    ///
-    /// An error bar from n draws has itself a relative error of about √(κ/4n), with κ = E X⁴/(E X²)². A
-    /// throughput made of k uniform directions has κ = ((16/5)/(4/3)²)ᵏ = (9/5)ᵏ, whatever the albedo, and
-    /// light that one path in m finds by chance m times that. From κ = 10⁶ on it is told; in so many draws or
-    /// fewer, error bars are mostly too short. For a sum up to K bounces κ is at most (Σ (16/5)^(k/4) ρᵏ)⁴/(E
-    /// X²)², and by chance m is estimated from the light's part of all faces. Samples of a light at the
-    /// distance a from the walls, taken from there, have κ of about 8/a³: with c, d and y the way down,
-    /// across and along, E Xⁿ is in proportion to ∫ (cd)ⁿ/(c² + d² + y²)²ⁿ over d > a, 0.131/a for n = 2 and
-    /// 0.00112/a⁵ for n = 4.
-    ///
-    /// ```
-    /// # use unbiased::paths::room::{BoxRoom, Scene};
-    /// # use unbiased::lambertian::hemisphere::Hemisphere;
-    /// # use unbiased::paths::{Bounces, FindLight, Paths};
-    /// let room = BoxRoom::new(Scene::default())?;
-    /// let by = |directions| Paths::new(room, Bounces::Exactly(64), directions, FindLight::BySampling);
-    /// assert_eq!(by(Hemisphere::Cosine)?.caution(), None);
-    /// let caution = by(Hemisphere::Uniform)?.caution().unwrap();
-    /// assert!(caution.ends_with("of fewer than about 1e16 draws means nothing"));
-    /// # Ok::<(), unbiased::Error>(())
-    /// ```
-    pub fn caution(&self) -> Option<String> {
+    /// What [`doubt`](Estimator::doubt) says.
+    fn reason(&self) -> Option<String> {
         let albedo = most_albedo(&self.room);
         let (spread, shown) = match self.directions {
             Hemisphere::Cosine => (1.0, "ρ²"),
@@ -507,6 +481,40 @@ impl Estimator for Paths {
     fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
         side_by_side::fill::<f64>(self, rng, draws);
     }
+
+    /// Why error bars are not to be trusted, if they are not: the variance may be infinite, or so few paths
+    /// hold most of it that a run of a million does not meet them.
+    ///
+    /// A path's squared throughput grows by E\[(ρ cos θ/(π p(ω)))²\]/q a bounce, times the q of going on:
+    /// ρ²/q with cosine directions, (4/3)ρ²/q with uniform ones. It must stay below 1 for the largest albedo
+    /// ρ to be safe. And light samples near the light's edge have an infinite variance where the light
+    /// touches a wall.
+    ///
+    /// An error bar from n draws has itself a relative error of about √(κ/4n), with κ = E X⁴/(E X²)². A
+    /// throughput made of k uniform directions has κ = ((16/5)/(4/3)²)ᵏ = (9/5)ᵏ, whatever the albedo, and
+    /// light that one path in m finds by chance m times that. From κ = 10⁶ on it is told; in so many draws or
+    /// fewer, error bars are mostly too short. For a sum up to K bounces κ is at most (Σ (16/5)^(k/4) ρᵏ)⁴/(E
+    /// X²)², and by chance m is estimated from the light's part of all faces. Samples of a light at the
+    /// distance a from the walls, taken from there, have κ of about 8/a³: with c, d and y the way down,
+    /// across and along, E Xⁿ is in proportion to ∫ (cd)ⁿ/(c² + d² + y²)²ⁿ over d > a, 0.131/a for n = 2 and
+    /// 0.00112/a⁵ for n = 4.
+    ///
+    /// ```
+    /// # use unbiased::paths::room::{BoxRoom, Scene};
+    /// # use unbiased::lambertian::hemisphere::Hemisphere;
+    /// # use unbiased::paths::{Bounces, FindLight, Paths};
+    /// use unbiased::Estimator;
+    ///
+    /// let room = BoxRoom::new(Scene::default())?;
+    /// let by = |directions| Paths::new(room, Bounces::Exactly(64), directions, FindLight::BySampling);
+    /// assert_eq!(by(Hemisphere::Cosine)?.doubt(), None);
+    /// let doubt = by(Hemisphere::Uniform)?.doubt().unwrap().to_string();
+    /// assert!(doubt.ends_with("of fewer than about 1e16 draws means nothing"));
+    /// # Ok::<(), unbiased::Error>(())
+    /// ```
+    fn doubt(&self) -> Option<Doubt> {
+        self.reason().map(Doubt::Reason)
+    }
 }
 
 /// [`Paths`] in single precision; see [`Paths::in_f32`].
@@ -520,6 +528,10 @@ impl Estimator for PathsF32 {
 
     fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
         side_by_side::fill::<f32>(&self.0, rng, draws);
+    }
+
+    fn doubt(&self) -> Option<Doubt> {
+        self.0.doubt()
     }
 }
 

@@ -1,6 +1,7 @@
 //! What roulette costs and buys: a model of light paths in which all of it has a closed form.
 
 use super::coin;
+use crate::doubt::Doubt;
 use crate::error::{Result, require, require_count};
 use crate::estimator::Estimator;
 use crate::float::Extended;
@@ -216,6 +217,10 @@ impl Estimator for RoulettePaths {
         }
         rng.count_evaluations(vertices);
         sum
+    }
+
+    fn doubt(&self) -> Option<Doubt> {
+        self.variance().is_infinite().then_some(Doubt::InfiniteVariance)
     }
 }
 

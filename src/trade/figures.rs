@@ -218,19 +218,15 @@ fn efficiencies(drawn: &[Drawn<'_>], comparison: &Comparison) -> Panel {
             Some(part) => {
                 panel.line(&rival.name, *ink, [[low, y], [part, y]]);
                 panel.marks(&rival.name, *ink, *marker, [[part, y]]);
-                let mind = match rival.nature {
-                    Nature::Biased => ", biased",
-                    _ if rival.heavy_tail => ", heavy tail",
-                    _ => "",
+                let mind = match (rival.nature, rival.doubt()) {
+                    (Nature::Biased, _) => ", biased".into(),
+                    (_, Some(doubt)) => format!(", {}", doubt.mark()),
+                    _ => String::new(),
                 };
                 panel.text(Ink::Black, [part, y], Side::Right, &format!("{}{mind}", two_digits(part)));
             }
             None => {
-                let why = match rival.nature {
-                    Nature::InfiniteVariance => "infinite variance",
-                    _ if !rival.varies() => "no variance",
-                    _ => "none",
-                };
+                let why = rival.doubt().map_or("none", |doubt| doubt.mark());
                 panel.text(Ink::Black, [low, y], Side::Right, why);
             }
         }

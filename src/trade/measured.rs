@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::REAL;
 use super::batches::COUNT;
+use crate::doubt::Doubt;
 use crate::estimate::Estimate;
 
 /// What is known of an estimator beforehand.
@@ -104,6 +105,15 @@ pub struct Measured {
 }
 
 impl Measured {
+    /// Why its variance is not to be trusted, if it is not.
+    pub fn doubt(&self) -> Option<Doubt> {
+        match self.nature {
+            Nature::InfiniteVariance => Some(Doubt::InfiniteVariance),
+            _ if !self.varies() => Some(Doubt::NeverVaried),
+            _ => self.heavy_tail.then_some(Doubt::HeavyTail),
+        }
+    }
+
     /// The variance σ² of a draw, in the truth's unit squared: s² of the draws, and infinite where that was
     /// declared, whatever theirs is.
     pub fn variance(&self) -> f64 {

@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 
 use super::comparison::{Comparison, Ranked};
 use super::measured::{Crossing, Measured, Nature, Reach};
+use crate::doubt::Doubt;
 use crate::numbers::{duration, plus_minus, two_digits, unit};
 
 /// The errors to which a table gives the times.
@@ -82,16 +83,13 @@ impl Comparison {
 
     fn remark(&self, rival: &Measured, set_apart: bool) -> String {
         let mut remarks = Vec::new();
-        match rival.nature {
-            Nature::InfiniteVariance => remarks.push("infinite variance".to_owned()),
-            Nature::Biased => remarks.extend(self.of_the_bias(rival)),
-            Nature::Unbiased => {}
+        if rival.nature == Nature::Biased {
+            remarks.extend(self.of_the_bias(rival));
         }
-        if !rival.varies() {
-            remarks.push("no variance".into());
-        } else if rival.heavy_tail && rival.nature != Nature::InfiniteVariance {
-            remarks.push("a few draws hold the variance, which may be infinite".into());
-        }
+        remarks.extend(rival.doubt().map(|doubt| match doubt {
+            Doubt::HeavyTail => doubt.to_string(),
+            _ => doubt.mark().to_owned(),
+        }));
         if !set_apart {
             remarks.push("not told apart from the one above".into());
         }

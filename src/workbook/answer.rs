@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use serde::Serialize;
 
 use super::Value;
+use crate::doubt::Doubt;
 use crate::estimate::Estimate;
 use crate::plot::{Edition, Figure};
 use crate::run::{Cost, Outcome, Part, Shortfall};
@@ -25,10 +26,8 @@ pub enum Kind {
 pub(super) enum Words {
     /// A classic mistake, in a few words.
     WrongOnPurpose(String),
-    /// Its error bar means nothing.
-    InfiniteVariance,
-    /// Its error bar may mean nothing, for this reason.
-    Careful(String),
+    /// Its error bar is not to be trusted.
+    Doubted(Doubt),
     /// It was not run.
     LeftOut,
 }
@@ -47,7 +46,6 @@ pub struct Answer {
     cost: Cost,
     seed: Option<u64>,
     seconds: Option<f64>,
-    pilot_never_varied: bool,
     shortfall: Option<Shortfall>,
     part: Option<Part>,
     note: Option<String>,
@@ -59,11 +57,6 @@ const FEWEST: u64 = 1000;
 
 /// The same where all draws are alike, and off.
 const FEWEST_ALIKE: u64 = 100_000;
-
-/// Instead of ✓ or ✗.
-pub(super) const TOO_FEW: &str = "too few draws to judge";
-
-const INFINITE: &str = "The mean is finite, the variance is not: this error bar means nothing.";
 
 impl Answer {
     /// An answer to `question`, the sheet's number first ("2.1", "5.1(ii)"), about `what`, which does not
@@ -81,7 +74,6 @@ impl Answer {
             cost: Cost::default(),
             seed: None,
             seconds: None,
-            pilot_never_varied: false,
             shortfall: None,
             part: None,
             note: None,
@@ -135,7 +127,6 @@ impl Answer {
         self.cost = outcome.cost;
         self.seed = Some(outcome.seed);
         self.seconds = Some(outcome.elapsed.as_secs_f64());
-        self.pilot_never_varied = outcome.pilot_never_varied();
         self.shortfall = outcome.shortfall;
         self.part = outcome.part.clone();
         self
@@ -202,28 +193,36 @@ impl Answer {
     }
 
     /// Whether the estimate agrees with the truth, |z| ≤ 4, where there are both, the row is not a
-    /// demonstration, and there are
-    /// draws enough to say so: 1000, or 100 000 where none of them differed and all are off. (A value that
-    /// comes up in a draw with
-    /// probability p is missed by n draws with probability 1e-12 or less from p = 27.6/n on: here 3e-4.)
-    /// Where they have less than
-    /// a hundredth of the truth, no number will do: all of it may be in values as rare as that, as with a
-    /// light too small to hit.
+    /// demonstration, and nothing is to be said against its error bar.
     pub fn agrees(&self) -> Option<bool> {
-        if self.kind == Kind::Demonstration || self.too_few_draws() {
+        if self.kind == Kind::Demonstration || self.doubt().is_some() {
             return None;
         }
         Some(self.z()?.abs() <= 4.0)
     }
 
-    /// Whether nothing but the number of draws stands in the way of a verdict.
-    pub(super) fn too_few_draws(&self) -> bool {
-        let (Some(estimate), Some(truth), Kind::Answer) = (self.estimate, self.truth, self.kind) else {
-            return false;
+    /// Why its error bar is not to be trusted, if it is not: for a reason given, or because there are too few
+    /// draws, or all are the same.
+    ///
+    /// It takes 1000 draws, or 100 000 where none of them differed and all are off: a value that comes up in
+    /// a draw with probability p is missed by n draws with probability 1e-12 or less from p = 27.6/n on, here
+    /// 3e-4. Where all have less than a hundredth of the truth, or are 0 and no truth is known, no number
+    /// will do: all of it may be in values as rare as that, as with a light too small to hit.
+    pub(super) fn doubt(&self) -> Option<Doubt> {
+        if let Some(Words::Doubted(doubt)) = &self.words {
+            return Some(doubt.clone());
+        }
+        let (estimate, Kind::Answer) = (self.estimate?, self.kind) else { return None };
+        let Some(truth) = self.truth else {
+            let dark = estimate.mean() == 0.0 && estimate.std_error() == Some(0.0);
+            return dark.then_some(Doubt::NeverVaried);
         };
         let all_alike_and_off = self.z().is_some_and(f64::is_infinite);
-        let hidden = all_alike_and_off && estimate.mean().abs() < 0.01 * truth.abs();
-        hidden || estimate.draws() < if all_alike_and_off { FEWEST_ALIKE } else { FEWEST }
+        match estimate.draws() {
+            _ if all_alike_and_off && estimate.mean().abs() < 0.01 * truth.abs() => Some(Doubt::NeverVaried),
+            draws if draws < FEWEST || all_alike_and_off && draws < FEWEST_ALIKE => Some(Doubt::TooFewDraws),
+            _ => None,
+        }
     }
 
     /// Whether it is right: as [`agrees`](Self::agrees), or to nine digits where it was found numerically.
@@ -236,17 +235,17 @@ impl Answer {
 
     /// ✓ or ✗, or in words why neither.
     pub(super) fn verdict(&self) -> &'static str {
+        if let Some(doubt) = self.doubt() {
+            return doubt.mark();
+        }
         match (&self.words, self.right()) {
             (Some(Words::WrongOnPurpose(_)), _) => "wrong on purpose",
-            (Some(Words::InfiniteVariance), _) => "infinite variance",
-            (Some(Words::Careful(_)), _) => "not judged",
             (Some(Words::LeftOut), _) => "left out",
             (None, Some(true)) => "✓",
             (None, Some(false)) => "✗",
-            (None, None) if self.too_few_draws() => TOO_FEW,
             (None, None) if self.kind == Kind::Demonstration => "not judged",
             (None, None) if self.found().is_some() && self.truth.is_none() => "no closed form",
-            (None, None) => "",
+            _ => "",
         }
     }
 
@@ -258,13 +257,11 @@ impl Answer {
         }
     }
 
-    /// What there is to say of the verdict.
-    pub(super) fn reason(&self) -> Option<String> {
-        match self.words.as_ref()? {
-            Words::WrongOnPurpose(why) => Some(format!("Wrong on purpose: {why}.")),
-            Words::InfiniteVariance => Some(INFINITE.into()),
-            Words::Careful(caution) => Some(format!("Careful: {caution}.")),
-            Words::LeftOut => None,
+    /// What there is to say of its error bar, in a sentence, where the verdict does not say it.
+    pub(super) fn caution(&self) -> Option<String> {
+        match self.doubt()? {
+            Doubt::TooFewDraws => None,
+            doubt => Some(format!("Careful: {doubt}.")),
         }
     }
 
@@ -287,10 +284,6 @@ impl Answer {
 
     pub(super) fn seconds(&self) -> Option<f64> {
         self.seconds
-    }
-
-    pub(super) fn pilot_never_varied(&self) -> bool {
-        self.pilot_never_varied
     }
 
     /// By how much it falls short of the error asked for.
@@ -337,10 +330,11 @@ mod tests {
         {
             assert_eq!(row(&uniform, draws, 0.5).agrees(), right, "{draws}");
             assert_eq!(row(&uniform, draws, 0.4).agrees(), wrong, "{draws}");
-            assert_eq!(row(&uniform, draws, 0.4).too_few_draws(), wrong.is_none());
+            let few = wrong.is_none().then_some(Doubt::TooFewDraws);
+            assert_eq!(row(&uniform, draws, 0.4).doubt(), few);
         }
         assert_eq!(row(&uniform, 1000, 0.4).demonstration().agrees(), None);
-        assert!(!row(&uniform, 2, 0.4).demonstration().too_few_draws());
+        assert_eq!(row(&uniform, 2, 0.4).demonstration().doubt(), None);
     }
 
     #[test]

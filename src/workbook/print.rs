@@ -281,7 +281,7 @@ fn solution(answer: &Answer, options: &Options) -> String {
         if estimate.draws() > 1 {
             line += " (95 %)";
         }
-        if let Some(z) = answer.z().filter(|z| !answer.too_few_draws() || z.is_finite()) {
+        if let Some(z) = answer.z().filter(|z| answer.doubt().is_none() || z.is_finite()) {
             line += &format!("   z = {}", std_errors(z));
         }
         if 17 + line.chars().count() + 3 + verdict.chars().count() < width {
@@ -304,8 +304,9 @@ fn solution(answer: &Answer, options: &Options) -> String {
     if options.verbose && answer.estimate().is_some() {
         text += &labelled("        cost     ", &cost(answer), width);
     }
-    let reason = answer.reason().filter(|_| answer.on_purpose().is_none());
-    for sentence in cut_short(answer).into_iter().chain(reason).chain(answer.sentence().map(str::to_owned)) {
+    for sentence in
+        cut_short(answer).into_iter().chain(answer.caution()).chain(answer.sentence().map(str::to_owned))
+    {
         text += &labelled("        ", &sentence, width);
     }
     text
@@ -316,9 +317,6 @@ fn cost(answer: &Answer) -> String {
     let mut text = format!("{draws} draws, {} random numbers", cost.random_numbers);
     if cost.evaluations > 0 {
         text += &format!(", {} evaluations", cost.evaluations);
-    }
-    if answer.pilot_never_varied() {
-        text += ", the pilot run never varied";
     }
     text + &format!(", {:.3} s", answer.seconds().unwrap_or_default())
 }

@@ -4,6 +4,7 @@ use std::cell::{Cell, RefCell};
 
 use super::answer::Words;
 use super::{Answer, AnswerFn, Options, Question, Value, print};
+use crate::doubt::Doubt;
 use crate::error::Result;
 use crate::estimator::Estimator;
 use crate::numbers::rounded;
@@ -219,15 +220,11 @@ impl Row<'_> {
         self.set(|answer| answer.not_judged(Words::WrongOnPurpose(why.into())))
     }
 
-    /// Where the variance is infinite its error bar means nothing, and is not judged by.
-    pub fn infinite_variance_if(self, infinite: bool) -> Self {
-        if infinite { self.set(|answer| answer.not_judged(Words::InfiniteVariance)) } else { self }
-    }
-
-    /// Where there is a reason to mistrust its error bar, it is not judged by.
-    pub fn careful(self, caution: Option<String>) -> Self {
-        match caution {
-            Some(caution) => self.set(|answer| answer.not_judged(Words::Careful(caution))),
+    /// Where there is a reason to mistrust its error bar that the estimator does not know itself, it is not
+    /// judged by.
+    pub fn doubt(self, doubt: Option<Doubt>) -> Self {
+        match doubt {
+            Some(doubt) => self.set(|answer| answer.not_judged(Words::Doubted(doubt))),
             None => self,
         }
     }
@@ -265,18 +262,11 @@ impl Row<'_> {
         // the worksheets of a class take a minute so
         let draws = if self.sheet.options.one_figure { (draws / 8).max(2) } else { draws };
         let outcome = self.sheet.options.run(estimator, draws)?;
-        Ok(self.set(|answer| match cut {
+        let this = self.doubt(estimator.doubt());
+        Ok(this.set(|answer| match cut {
             Some(cut) => answer.outcome(&outcome).note(cut),
             None => answer.outcome(&outcome),
         }))
-    }
-
-    /// Once it is estimated: a reason not to judge it, if `doubt` finds one in its mean.
-    pub fn doubted(self, doubt: impl FnOnce(f64) -> Option<String>) -> Self {
-        self.set(|answer| match answer.estimate().and_then(|estimate| doubt(estimate.mean())) {
-            Some(doubt) => answer.not_judged(Words::Careful(doubt)),
-            None => answer,
-        })
     }
 }
 

@@ -153,7 +153,7 @@ fn table(question: &Question, rows: &[&Answer], options: &Options) -> Markup {
                     @else if let Some(value) = row.found() { (shortened(value)) }
                 }
                 td.number data-name="z" {
-                    @if let Some(z) = row.z().filter(|_| !row.too_few_draws()) { (std_errors(z)) }
+                    @if let Some(z) = row.z().filter(|_| row.doubt().is_none()) { (std_errors(z)) }
                 }
                 td.number data-name="draws" {
                     @if let Some(estimate) = row.estimate() { (grouped(estimate.draws())) }

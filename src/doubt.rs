@@ -1,0 +1,53 @@
+//! Why an error bar means nothing, or may mean nothing: one word for it wherever numbers are shown.
+
+use std::fmt;
+
+/// Why an error bar is not to be trusted. It displays as a clause; [`mark`](Self::mark) is a word or two.
+///
+/// ```
+/// use unbiased::{Doubt, Estimator, roulette::LightModel};
+///
+/// // p_rr = 0.2 is below ρ²
+/// let paths = LightModel::new(0.8, 0.5)?.roulette(0.2)?;
+/// assert_eq!(paths.doubt(), Some(Doubt::InfiniteVariance));
+/// # Ok::<(), unbiased::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub enum Doubt {
+    /// The mean is finite, the variance is not.
+    InfiniteVariance,
+    /// A reason that follows from the parameters: the variance may be infinite, or so few draws hold most of
+    /// it that a run may meet none of them.
+    Reason(String),
+    /// A few of the draws hold most of their variance.
+    HeavyTail,
+    /// All draws were the same, and not the truth.
+    NeverVaried,
+    /// There are too few draws for a verdict.
+    TooFewDraws,
+}
+
+impl Doubt {
+    /// A word or two, in place of a verdict.
+    pub fn mark(&self) -> &'static str {
+        match self {
+            Self::InfiniteVariance => "infinite variance",
+            Self::Reason(_) => "not judged",
+            Self::HeavyTail => "heavy tail",
+            Self::NeverVaried => "no variance",
+            Self::TooFewDraws => "too few draws to judge",
+        }
+    }
+}
+
+impl fmt::Display for Doubt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::InfiniteVariance => "the mean is finite, the variance is not: this error bar means nothing",
+            Self::Reason(reason) => reason,
+            Self::HeavyTail => "a few draws hold the variance, which may be infinite",
+            Self::NeverVaried => "all draws were the same: this error bar says nothing else",
+            Self::TooFewDraws => "there are too few draws to judge",
+        })
+    }
+}
