@@ -379,8 +379,9 @@ fn the_notebooks_have_their_parts() {
             }
             let (_, part) = prose.split_once(&format!("## {id} ")).unwrap();
             let answer = between(part, &format!("<summary>Answer to {id}</summary>"), "</details>");
-            let has = |latex| answer.contains(&format!("$${latex}$$"));
-            assert!(stated.latex.iter().any(has), "{id}: none of {:#?} in “{answer}”", stated.latex);
+            for latex in &stated.latex {
+                assert!(answer.contains(&format!("$${latex}$$")), "{id}: no $${latex}$$");
+            }
             let example = format!("../examples/{}.rs", question.example);
             assert!(prose.contains(&example), "{id}: no {example}");
         }
@@ -458,7 +459,7 @@ fn everything_shown_is_described() {
             );
             let html = shown.get("text/html").map_or("", |html| html);
             for image in html.split("<img ").skip(1) {
-                assert!(between(image, "alt=\"", "\" src=").len() >= 40, "{cell}: {image:.200}");
+                assert!(between(image, "alt=\"", "\"").len() >= 40, "{cell}: {image:.200}");
             }
             assert_eq!(html.matches("<table").count(), html.matches("<caption").count(), "{cell}");
             assert!(!html.contains("<svg"), "{cell}");
