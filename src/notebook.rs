@@ -1,13 +1,15 @@
 //! Values shown as what they are in a Jupyter notebook, with [evcxr](https://github.com/evcxr/evcxr)'s Rust
 //! kernel.
 //!
-//! A cell that ends in a [`Figure`], an [`Estimate`], a verdict of [`check`], a [`Table`] or a [`Comparison`]
-//! shows a picture or HTML, and plain text where the viewer has nothing better: the kernel calls the type's
-//! `evcxr_display`. The five notebooks of the worksheet are in `notebooks/`.
+//! A cell that ends in a [`Figure`], an [`Estimate`], a verdict of [`check`], a [`Table`] or a [`Comparison`] shows
+//! HTML, and plain text where the viewer has nothing better: the kernel calls the type's `evcxr_display`. A figure
+//! is an image with its title and description as alternative text. The five notebooks of the worksheet are in
+//! `notebooks/`.
 
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
 
+use base64::prelude::{BASE64_STANDARD, Engine as _};
 use maud::{Markup, html};
 pub use rand::distr::Distribution;
 
@@ -24,17 +26,17 @@ use crate::workbook::{Judgement, Table, told_once};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Shown {
     plain: String,
-    rich: Option<(&'static str, String)>,
+    html: String,
 }
 
 impl Shown {
-    fn html(plain: String, markup: Markup) -> Self {
-        Self { plain, rich: Some(("text/html", markup.into_string())) }
+    fn new(plain: String, markup: Markup) -> Self {
+        Self { plain, html: markup.into_string() }
     }
 
     /// A sentence, with a mark in front that says whether it is good news.
     fn verdict(good: Option<bool>, sentence: &str) -> Self {
-        Self::html(sentence.into(), said(good, sentence))
+        Self::new(sentence.into(), said(good, sentence))
     }
 
     /// As plain text, for viewers that show nothing else.
@@ -42,16 +44,15 @@ impl Shown {
         &self.plain
     }
 
-    /// The media type and content of the picture or HTML, where there is one.
-    pub fn rich(&self) -> Option<(&'static str, &str)> {
-        self.rich.as_ref().map(|(kind, content)| (*kind, content.as_str()))
+    /// As HTML.
+    pub fn html(&self) -> &str {
+        &self.html
     }
 
     /// Writes it to standard output between the lines by which the kernel knows it.
     fn print(&self) {
         let mut out = String::new();
-        let rich = self.rich.as_ref().map(|(kind, content)| (*kind, content));
-        for (kind, content) in [("text/plain", &self.plain)].into_iter().chain(rich) {
+        for (kind, content) in [("text/plain", &self.plain), ("text/html", &self.html)] {
             // writing to a String cannot fail
             let _ = writeln!(out, "EVCXR_BEGIN_CONTENT {kind}\n{}\nEVCXR_END_CONTENT", content.trim());
         }
@@ -91,7 +92,10 @@ displayed!(
 
 impl Show for Figure {
     fn show(&self) -> Shown {
-        Shown { plain: self.title().into(), rich: Some(("image/svg+xml", self.svg().into())) }
+        // as SVG the viewers would show it without a word for those who cannot see it, and some not at all
+        let image = format!("data:image/svg+xml;base64,{}", BASE64_STANDARD.encode(self.svg()));
+        let alt = format!("{}. {}", self.title(), self.description());
+        Shown::new(self.title().into(), html! { img alt=(alt) src=(image); })
     }
 }
 
@@ -121,7 +125,7 @@ fn interval(estimate: &Estimate, work: &str) -> Shown {
         Some(reach) => (plus_minus(estimate.mean(), reach), "95 %, "),
         None => (estimate.to_string(), ""),
     };
-    Shown::html(
+    Shown::new(
         format!("{interval} ({level}{work})"),
         html! { b { (interval) } span style=(FAINT) { " (" (level) (work) ")" } },
     )
@@ -158,7 +162,7 @@ impl Show for Agreement {
 impl Show for Exact {
     fn show(&self) -> Shown {
         let said = format!("mean {:.9}, variance {:.9}, by quadrature", self.mean, self.variance);
-        Shown::html(said.clone(), html! { (said) })
+        Shown::new(said.clone(), html! { (said) })
     }
 }
 
@@ -175,7 +179,7 @@ impl Show for Diagnosis {
                 }
             }
         };
-        Shown::html(plain, markup)
+        Shown::new(plain, markup)
     }
 }
 
@@ -189,7 +193,7 @@ impl Show for Table {
                 tbody { @for row in &self.rows { tr { @for cell in row { td style=(LEFT) { (cell) } } } } }
             }
         };
-        Shown::html(plain, markup)
+        Shown::new(plain, markup)
     }
 }
 
@@ -330,14 +334,14 @@ impl Show for Checked {
             }
             Self::Found(diagnosis) => diagnosis,
         };
-        let Shown { plain, rich } = diagnosis.show();
-        let Some(within) = self.within() else { return Shown { plain, rich } };
+        let Shown { plain, html } = diagnosis.show();
+        let Some(within) = self.within() else { return Shown { plain, html } };
         let sentence = format!(
             "Unbiased within {:.2} % on every probe, {CERTAIN} std errors counted in.",
             100.0 * within
         );
-        let rich = rich.map(|(kind, content)| (kind, said(Some(true), &sentence).into_string() + &content));
-        Shown { plain: format!("{sentence}\n{plain}"), rich }
+        let html = said(Some(true), &sentence).into_string() + &html;
+        Shown { plain: format!("{sentence}\n{plain}"), html }
     }
 }
 
@@ -372,18 +376,35 @@ mod tests {
     use crate::stream::Stream;
 
     #[test]
-    fn every_kind_has_plain_text_and_something_better() {
+    fn every_kind_has_plain_text_and_html() {
         let figure = crate::lambertian::figures::integrand().unwrap();
-        let (kind, picture) = figure.show().rich().map(|(kind, content)| (kind, content.to_owned())).unwrap();
-        assert_eq!((kind, picture.as_str()), ("image/svg+xml", figure.svg()));
-        assert_eq!(figure.show().plain(), figure.title());
+        let shown = figure.show();
+        let image = format!("src=\"data:image/svg+xml;base64,{}\"", BASE64_STANDARD.encode(figure.svg()));
+        assert!(shown.html().contains(&image));
+        assert!(shown.html().starts_with("<img alt=\"cos θ sin θ has area ½"), "{}", shown.html());
+        assert!(shown.html().contains(&format!(". {}\"", figure.description())));
+        assert_eq!(shown.plain(), figure.title());
 
         let table = against(0.0, &[("<b>", Estimate::from_draws(&[-1.0, 2.0]))]);
         let shown = table.show();
-        let (kind, content) = shown.rich().unwrap();
-        assert_eq!(kind, "text/html");
-        assert!(content.contains("&lt;b&gt;") && !content.contains("<b>"), "{content}");
+        assert!(shown.html().contains("&lt;b&gt;") && !shown.html().contains("<b>"), "{}", shown.html());
         assert!(shown.plain().contains("0 ± 19"), "{}", shown.plain());
+    }
+
+    /// The examples of RFC 4648.
+    #[test]
+    fn base64_is_padded() {
+        for (text, digits) in [
+            ("", ""),
+            ("f", "Zg=="),
+            ("fo", "Zm8="),
+            ("foo", "Zm9v"),
+            ("foob", "Zm9vYg=="),
+            ("fooba", "Zm9vYmE="),
+        ] {
+            assert_eq!(base64(text.as_bytes()), digits);
+        }
+        assert_eq!(base64("θ½?>".as_bytes()), "zrjCvT8+");
     }
 
     #[test]

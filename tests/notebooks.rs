@@ -11,7 +11,7 @@ use std::process::Command;
 use std::sync::OnceLock;
 use std::time::SystemTime;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use unbiased::workbook;
 
 /// Begins what a cell prints.
@@ -21,38 +21,47 @@ struct Cell {
     id: String,
     code: bool,
     source: String,
-    tags: Vec<String>,
+    metadata: Value,
     outputs: Vec<Value>,
 }
 
 impl Cell {
     fn is(&self, tag: &str) -> bool {
-        self.tags.iter().any(|own| own == tag)
+        self.metadata["tags"].as_array().is_some_and(|tags| tags.iter().any(|own| own == tag))
     }
 
-    /// What is stored as printed, and as shown: by media type.
+    /// What is stored as its output.
     fn stored(&self) -> Printed {
-        let mut printed = Printed::default();
+        let (mut shown, mut text) = (Printed::new(), String::new());
         for output in &self.outputs {
             match output["output_type"].as_str() {
-                Some("stream") if output["name"] == "stdout" => printed.text += &joined(&output["text"]),
+                Some("stream") if output["name"] == "stdout" => text += &joined(&output["text"]),
                 Some("execute_result") => {
-                    for (kind, content) in output["data"].as_object().unwrap() {
-                        printed.shown.insert(kind.clone(), joined(content));
-                    }
+                    let data = output["data"].as_object().unwrap().iter();
+                    shown.extend(data.map(|(kind, content)| (kind.clone(), joined(content))));
                 }
                 other => panic!("cell {} has an output of type {other:?}: {output}", self.id),
             }
         }
-        printed.text.truncate(printed.text.trim_end().len());
-        printed
+        with_text(shown, &text)
     }
+}
+
+/// Content by media type; printed text under `stdout`.
+type Printed = BTreeMap<String, String>;
+
+fn with_text(mut shown: Printed, text: &str) -> Printed {
+    if !text.trim_end().is_empty() {
+        shown.insert("stdout".into(), text.trim_end().into());
+    }
+    shown
 }
 
 struct Notebook {
     name: String,
     section: char,
-    bytes: u64,
+    bytes: usize,
+    metadata: Value,
     cells: Vec<Cell>,
 }
 
@@ -67,52 +76,51 @@ impl Notebook {
             .find(|cell| cell.is(tag))
             .unwrap_or_else(|| panic!("{}: no cell “{tag}”", self.name))
     }
+
+    fn prose(&self) -> String {
+        self.cells.iter().filter(|cell| !cell.code).map(|cell| cell.source.clone() + "\n").collect()
+    }
 }
 
-#[derive(Debug, Default, PartialEq)]
-struct Printed {
-    text: String,
-    shown: BTreeMap<String, String>,
-}
-
+/// Text, or its lines.
 fn joined(lines: &Value) -> String {
     match lines {
         Value::String(text) => text.clone(),
-        Value::Array(lines) => lines.iter().map(|line| line.as_str().unwrap()).collect(),
-        other => panic!("not text: {other}"),
+        lines => lines.as_array().unwrap().iter().map(|line| line.as_str().unwrap()).collect(),
     }
 }
 
 fn notebooks() -> Vec<Notebook> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("notebooks");
-    let mut paths: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut paths: Vec<PathBuf> =
+        fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|ending| ending == "ipynb"));
     paths.sort();
     paths.iter().map(|path| read(path)).collect()
 }
 
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("notebooks")
+}
+
 fn read(path: &Path) -> Notebook {
     let text = fs::read_to_string(path).unwrap();
     let json: Value = serde_json::from_str(&text).unwrap();
-    let cells = json["cells"].as_array().unwrap().iter().map(|cell| {
-        let tags = cell["metadata"]["tags"].as_array().cloned().unwrap_or_default();
-        Cell {
-            id: cell["id"].as_str().unwrap().into(),
-            code: cell["cell_type"] == "code",
-            source: joined(&cell["source"]),
-            tags: tags.iter().map(|tag| tag.as_str().unwrap().into()).collect(),
-            outputs: cell["outputs"].as_array().cloned().unwrap_or_default(),
-        }
+    let cells = json["cells"].as_array().unwrap().iter().map(|cell| Cell {
+        id: cell["id"].as_str().unwrap().into(),
+        code: cell["cell_type"] == "code",
+        source: joined(&cell["source"]),
+        metadata: cell["metadata"].clone(),
+        outputs: cell["outputs"].as_array().cloned().unwrap_or_default(),
     });
     let name = path.file_name().unwrap().to_str().unwrap().to_owned();
     let section = name.chars().next().unwrap();
-    Notebook { name, section, bytes: text.len() as u64, cells: cells.collect() }
+    Notebook { name, section, bytes: text.len(), metadata: json["metadata"].clone(), cells: cells.collect() }
 }
 
 /// A cell as statements: the kernel's own commands dropped, and what it ends in shown.
 ///
-/// The last statement begins at the last line that is neither indented nor a closing bracket; it is a value
-/// to be shown where it ends neither in `;` nor, unless it is a block, in `}`.
+/// The last statement begins at the last line that is neither indented nor a closing bracket. It is a value to
+/// be shown where it ends neither in `;` nor, unless it is a block, in `}`.
 fn statements(cell: &str) -> String {
     let lines: Vec<&str> = cell.lines().filter(|line| !line.starts_with(':')).collect();
     let begins = |line: &&str| line.starts_with(|c: char| !c.is_whitespace() && !")]}".contains(c));
@@ -122,64 +130,60 @@ fn statements(cell: &str) -> String {
     if shown { format!("{before}\n({last}).evcxr_display();\n") } else { format!("{before}\n{last}\n") }
 }
 
-fn function(name: &str, body: &str) -> String {
-    format!("fn {name}() -> Result<(), Box<dyn std::error::Error>> {{\n{body}\nOk(())\n}}\n")
-}
-
-/// One's own estimators, to be written into the marked cells: right, and wrong, with what is said of the
-/// wrong one.
-const TURNS: [(char, &str, &str, &str); 5] = [
-    ('1', "-(1.0 - rng.uniform()).ln() / p.rate", "-(1.0 - rng.uniform()).ln() * p.rate", "multiplied by λ"),
+/// Estimators for the marked cells: one that is right, what to replace in it by what to make it wrong, and what
+/// is said of the wrong one.
+const TURNS: [(char, &str, [&str; 2], &str); 5] = [
+    ('1', "-(1.0 - rng.uniform()).ln() / p.rate", ["/ p.rate", "* p.rate"], "multiplied by λ"),
     (
         '2',
         "let [[a, b], [c, d]] = p.ends();
-         p.rectangle.area() * p.f(a + (b - a) * rng.uniform(), c + (d - c) * rng.uniform())",
-        "let [[a, b], [c, d]] = p.ends();
-         let u = rng.uniform();
-         p.rectangle.area() * p.f(a + (b - a) * u, c + (d - c) * u)",
+         let (u, v) = (rng.uniform(), rng.uniform());
+         p.rectangle.area() * p.f(a + (b - a) * u, c + (d - c) * v)",
+        ["* v", "* u"],
         "the same U for x and y",
     ),
     (
         '3',
         "let cos_theta = (1.0 - rng.uniform()).sqrt();
          p.albedo * p.light(&Direction::polar(cos_theta, std::f64::consts::TAU * rng.uniform()).unwrap())",
-        "let cos_theta = 1.0 - rng.uniform();
-         p.albedo * p.light(&Direction::polar(cos_theta, std::f64::consts::TAU * rng.uniform()).unwrap())",
+        [".sqrt()", ""],
         "uniform directions, the cosine weight",
     ),
-    ('4', PATHS, "// one albedo for all\nPATHS", "p's albedo at every vertex"),
+    (
+        '4',
+        "let (room, bounces) = (&p.room, p.bounces());
+         let (mut vertex, mut throughput, mut light) = (room.point(), 1.0, 0.0);
+         for bounce in 0..=*bounces.end() {
+             if bounces.contains(&bounce) {
+                 light += throughput * room.emitted(&vertex);
+             }
+             let direction = Hemisphere::Cosine.direction_of(rng.uniform(), rng.uniform()).unwrap();
+             throughput *= room.albedo(&vertex);
+             let Some(hit) = nearest_hit(&vertex, vertex.to_room(&direction)) else { break };
+             vertex = hit;
+         }
+         light",
+        ["albedo(&vertex)", "albedo(&room.point())"],
+        "p's albedo at every vertex",
+    ),
     (
         '5',
         "if rng.uniform() < p.p_rr { p.x(rng) / p.p_rr } else { 0.0 }",
-        "if rng.uniform() < p.p_rr { p.x(rng) } else { 0.0 }",
+        [" / p.p_rr", ""],
         "no compensation",
     ),
 ];
 
-const PATHS: &str = "let (room, bounces) = (&p.room, p.bounces());
-    let (mut vertex, mut throughput, mut light) = (room.point(), 1.0, 0.0);
-    for bounce in 0..=*bounces.end() {
-        if bounces.contains(&bounce) {
-            light += throughput * room.emitted(&vertex);
-        }
-        let direction = Hemisphere::Cosine.direction_of(rng.uniform(), rng.uniform()).unwrap();
-        throughput *= room.albedo(&vertex);
-        let Some(hit) = nearest_hit(&vertex, vertex.to_room(&direction)) else { break };
-        vertex = hit;
-    }
-    light";
+fn turn(notebook: &Notebook) -> (char, &'static str, [&'static str; 2], &'static str) {
+    TURNS.into_iter().find(|(section, ..)| *section == notebook.section).expect("an estimator to try")
+}
 
 /// The cell to be filled in, filled in.
 fn filled(notebook: &Notebook, body: &str) -> String {
-    let body = body.replace("PATHS", &PATHS.replace("room.albedo(&vertex)", "room.albedo(&room.point())"));
     let empty = &notebook.tagged("your-turn").source;
     assert_eq!(empty.matches("f64::NAN").count(), 1, "{empty}");
-    let cells = [
-        &notebook.tagged("setup").source,
-        &empty.replace("f64::NAN", &body),
-        &notebook.tagged("check").source,
-    ];
-    cells.map(|cell| statements(cell)).concat()
+    let [setup, check] = ["setup", "check"].map(|tag| statements(&notebook.tagged(tag).source));
+    [setup, statements(&empty.replace("f64::NAN", body)), check].concat()
 }
 
 /// All notebooks as one program, which runs the part that it is told to.
@@ -187,7 +191,8 @@ fn program() -> String {
     let mut functions = String::new();
     let mut parts = String::new();
     let mut add = |name: String, body: &str| {
-        functions += &function(&name, body);
+        functions +=
+            &format!("fn {name}() -> Result<(), Box<dyn std::error::Error>> {{\n{body}\nOk(())\n}}\n");
         parts += &format!("Some(\"{name}\") => {name}(),\n");
     };
     for notebook in notebooks() {
@@ -195,10 +200,9 @@ fn program() -> String {
             .code()
             .map(|cell| format!("println!(\"{MARK}{}\");\n{}", cell.id, statements(&cell.source)));
         add(format!("cells_{}", notebook.section), &cells.collect::<String>());
-        let (_, right, wrong, _) =
-            TURNS.iter().find(|(section, ..)| *section == notebook.section).expect("an estimator to try");
+        let (_, right, [good, bad], _) = turn(&notebook);
         add(format!("right_{}", notebook.section), &filled(&notebook, right));
-        add(format!("wrong_{}", notebook.section), &filled(&notebook, wrong));
+        add(format!("wrong_{}", notebook.section), &filled(&notebook, &right.replace(good, bad)));
     }
     format!(
         "#![allow(warnings)]
@@ -273,23 +277,19 @@ fn run(binary: &Path, part: &str) -> String {
 
 /// What a program prints, cut at the marks, the shown content apart from the rest.
 fn parsed(printed: &str) -> BTreeMap<String, Printed> {
-    let mut cells = BTreeMap::new();
-    for part in printed.split(MARK).skip(1) {
-        let (id, printed) = part.split_once('\n').unwrap();
-        let mut cell = Printed::default();
-        let mut rest = printed;
+    let cells = printed.split(MARK).skip(1).map(|part| {
+        let (id, mut rest) = part.split_once('\n').unwrap();
+        let (mut shown, mut text) = (Printed::new(), String::new());
         while let Some((before, after)) = rest.split_once("EVCXR_BEGIN_CONTENT ") {
             let (kind, after) = after.split_once('\n').unwrap();
             let (content, after) = after.split_once("\nEVCXR_END_CONTENT\n").unwrap();
-            cell.text += before;
-            cell.shown.insert(kind.into(), content.into());
+            text += before;
+            shown.insert(kind.into(), content.into());
             rest = after;
         }
-        cell.text += rest;
-        cell.text.truncate(cell.text.trim_end().len());
-        cells.insert(id.into(), cell);
-    }
-    cells
+        (id.into(), with_text(shown, &(text + rest)))
+    });
+    cells.collect()
 }
 
 #[test]
@@ -300,13 +300,13 @@ fn the_cells_print_what_is_stored() {
         assert_eq!(printed.len(), notebook.code().count(), "{}", notebook.name);
         for cell in notebook.code().filter(|cell| !cell.is("timing")) {
             let (stored, printed) = (cell.stored(), &printed[&cell.id]);
-            assert!(
-                stored == *printed,
-                "{}, cell {}: stored is\n{stored:#?}\nprinted is\n{printed:#?}\n(notebooks/run stores anew)",
-                notebook.name,
+            let name = &notebook.name;
+            assert_eq!(
+                stored, *printed,
+                "{name}, cell {}: stored, printed; notebooks/run stores anew",
                 cell.id
             );
-            compared += usize::from(stored != Printed::default());
+            compared += usize::from(!stored.is_empty());
         }
     }
     assert!(compared >= 5 * 7, "only {compared} cells print anything");
@@ -314,24 +314,18 @@ fn the_cells_print_what_is_stored() {
 
 #[test]
 fn ones_own_estimator_is_missing_mistaken_or_right() {
-    for (section, _, _, mistake) in TURNS {
+    for notebook in notebooks() {
         let said = |part: &str| {
-            let printed = run(compiled(), &format!("{part}_{section}"));
-            parsed(&format!("{MARK}cell\n{printed}")).remove("cell").unwrap().shown["text/plain"].clone()
+            let printed = run(compiled(), &format!("{part}_{}", notebook.section));
+            parsed(&format!("{MARK}cell\n{printed}"))["cell"]["text/plain"].clone()
         };
         let right = said("right");
-        assert!(
-            right.starts_with("Unbiased within") && right.contains("Nothing wrong seen"),
-            "{section}: {right}"
-        );
+        assert!(right.starts_with("Unbiased within") && right.contains("Nothing wrong seen"), "{right}");
+        let (_, _, _, mistake) = turn(&notebook);
         let wrong = said("wrong");
-        assert!(wrong.starts_with("Not right.") && wrong.contains(mistake), "{section}: {wrong}");
-        let [notebook] = &notebooks().into_iter().filter(|n| n.section == section).collect::<Vec<_>>()[..]
-        else {
-            panic!("not one notebook of section {section}")
-        };
-        let unwritten = &notebook.tagged("check").stored().shown["text/plain"];
-        assert!(unwritten.starts_with("Missing"), "{section}: {unwritten}");
+        assert!(wrong.starts_with("Not right.") && wrong.contains(mistake), "{wrong}");
+        let unwritten = &notebook.tagged("check").stored()["text/plain"];
+        assert!(unwritten.starts_with("Missing"), "{unwritten}");
     }
 }
 
@@ -345,6 +339,13 @@ fn the_notebooks_have_their_parts() {
         assert!(notebook.bytes <= 1_500_000, "{name}: {} bytes", notebook.bytes);
         let count = notebook.cells.len();
         assert!((12..=20).contains(&count), "{name}: {count} cells");
+        // for the colours; without versions, which differ from machine to machine
+        let language = json!({
+            "kernelspec": {"display_name": "Rust", "language": "rust", "name": "rust"},
+            "language_info": {"name": "rust", "mimetype": "text/rust", "file_extension": ".rs",
+                "pygments_lexer": "rust", "codemirror_mode": "rust"},
+        });
+        assert_eq!(notebook.metadata, language, "{name}");
         // else a panic would pass for a success
         let setup = notebook.code().next().unwrap();
         assert!(setup.is("setup") && setup.source.starts_with(":preserve_vars_on_panic 0\n"), "{name}");
@@ -359,83 +360,147 @@ fn the_notebooks_have_their_parts() {
         for tag in ["your-turn", "check", "timing"] {
             notebook.tagged(tag);
         }
-        let figures = notebook.code().filter(|cell| cell.stored().shown.contains_key("image/svg+xml"));
+        let figures = notebook
+            .code()
+            .filter(|cell| cell.stored().get("text/html").is_some_and(|html| html.contains("<img ")));
         assert!(figures.count() >= 3, "{name}: few figures");
-        let prose = prose(notebook);
-        for part in [
-            "**Predict",
-            "knob",
-            "## Your turn",
-            "## An extreme",
-            "## What a second buys",
-            "**To take away:**",
-        ] {
+        let prose = notebook.prose();
+        let parts =
+            ["**Try:**", "## Your turn", "## An extreme", "## What a second buys", "**To take away:**"];
+        for part in parts {
             assert!(prose.contains(part), "{name}: no “{part}”");
         }
-        // the questions in the workbook's words, and the way to the worked answers
+        // the questions in the workbook's words, its answers in its formulas, the way to the worked answers
         for question in workbook::questions().filter(|question| question.id.starts_with(notebook.section)) {
-            let stated = question.at(&workbook::Options::default()).unwrap();
-            assert!(
-                prose.contains(&format!("## {} {}\n", question.id, stated.title)),
-                "{name}: {}",
-                question.id
-            );
-            assert!(prose.contains(&stated.statement), "{name}: the statement of {}", question.id);
-            if let Some(note) = &stated.on_the_original {
-                assert!(prose.contains(note), "{name}: the note on {}", question.id);
+            let (id, stated) = (question.id, question.at(&workbook::Options::default()).unwrap());
+            let title = format!("\n## {id} {}\n", stated.title);
+            for said in [Some(&title), Some(&stated.statement), stated.on_the_original.as_ref()] {
+                assert!(said.is_none_or(|said| plain(&prose).contains(&plain(said))), "{id}: no “{said:?}”");
             }
-            assert!(
-                prose.contains(&format!("../examples/{}.rs", question.example)),
-                "{name}: {}",
-                question.example
-            );
+            let (_, part) = prose.split_once(&format!("## {id} ")).unwrap();
+            let answer = between(part, &format!("<summary>Answer to {id}</summary>"), "</details>");
+            for latex in &stated.latex {
+                assert!(answer.contains(&format!("$${latex}$$")), "{id}: no $${latex}$$");
+            }
+            let example = format!("../examples/{}.rs", question.example);
+            assert!(prose.contains(&example), "{id}: no {example}");
         }
     }
 }
 
-fn prose(notebook: &Notebook) -> String {
-    notebook.cells.iter().filter(|cell| !cell.code).map(|cell| cell.source.clone() + "\n").collect()
+/// What is between two others, for the first time; nothing where they are missing.
+fn between<'t>(text: &'t str, from: &str, to: &str) -> &'t str {
+    text.split_once(from).and_then(|(_, rest)| rest.split_once(to)).unwrap_or_default().0
+}
+
+/// The workbook's plain text and a notebook's LaTeX in one spelling, without spaces and brackets.
+fn plain(text: &str) -> String {
+    let letters = ["λ lambda", "ρ rho", "ω omega", "θ theta", "φ varphi", "π pi", "∫ int", "× times", "≥ ge"];
+    let mut text = text.replace("\\,", "").replace("\\mathbf", "");
+    for (letter, name) in letters.iter().filter_map(|letter| letter.split_once(' ')) {
+        text = text.replace(&format!("\\{name}"), letter);
+    }
+    for (raised, spelt) in [("²", "^2"), ("⁻¹", "^−1"), ("-", "−")] {
+        text = text.replace(raised, spelt);
+    }
+    text.retain(|c| !c.is_whitespace() && !"$\\(){}'′".contains(c));
+    text
+}
+
+#[test]
+fn formulas_are_latex() {
+    for notebook in notebooks() {
+        for cell in notebook.cells.iter().filter(|cell| !cell.code) {
+            let uncoded: String = cell.source.split('`').step_by(2).collect();
+            let parts = uncoded.replace("$$", "$");
+            let parts: Vec<_> = parts.split('$').collect();
+            assert!(parts.len() % 2 == 1, "{}, cell {}: an odd $", notebook.name, cell.id);
+            for part in parts.iter().step_by(2) {
+                let typed = part.contains(|c| ('Α'..='ω').contains(&c) || "²ₙᵢ∫√≤≥×−^=".contains(c));
+                assert!(!typed, "{}, cell {}: {part}", notebook.name, cell.id);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_prediction_is_asked_for_before_each_folded_output() {
+    for notebook in notebooks() {
+        let mut asked = false;
+        for cell in &notebook.cells {
+            let at = format!("{}, cell {}", notebook.name, cell.id);
+            if !cell.code {
+                asked = cell.source.contains("**Predict");
+                continue;
+            }
+            let open = ["setup", "your-turn", "check", "open"].iter().any(|tag| cell.is(tag));
+            // as JupyterLab and as the classic notebook spell it
+            for folded in [&cell.metadata["jupyter"]["outputs_hidden"], &cell.metadata["collapsed"]] {
+                assert_eq!(folded.as_bool(), (!open).then_some(true), "{at}: folded");
+            }
+            assert!(open || asked, "{at}: no prediction");
+        }
+    }
+}
+
+#[test]
+fn everything_shown_is_described() {
+    for notebook in notebooks() {
+        assert!(
+            !notebook.prose().contains("![](") && !notebook.prose().contains("<img"),
+            "{}",
+            notebook.name
+        );
+        for (cell, shown) in notebook.code().map(|cell| (&cell.id, cell.stored())) {
+            assert_eq!(shown.contains_key("text/plain"), shown.contains_key("text/html"), "{cell}");
+            assert!(
+                shown.keys().all(|kind| ["stdout", "text/plain", "text/html"].contains(&&**kind)),
+                "{cell}"
+            );
+            let html = shown.get("text/html").map_or("", |html| html);
+            for image in html.split("<img ").skip(1) {
+                assert!(between(image, "alt=\"", "\"").len() >= 40, "{cell}: {image:.200}");
+            }
+            assert_eq!(html.matches("<table").count(), html.matches("<caption").count(), "{cell}");
+            assert!(!html.contains("<svg"), "{cell}");
+        }
+    }
 }
 
 #[test]
 fn links_lead_somewhere() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("notebooks");
     let mut links = 0;
     for notebook in notebooks() {
-        for link in prose(&notebook).split("](").skip(1) {
+        for link in notebook.prose().split("](").skip(1) {
             let (target, _) = link.split_once(')').unwrap();
-            assert!(folder.join(target).exists(), "{}: {target}", notebook.name);
+            assert!(folder().join(target).exists(), "{}: {target}", notebook.name);
             links += 1;
         }
     }
     assert!(links >= 5 * 2);
 }
 
-/// A decimal number in the text is in the code, in what a cell prints, or in the question itself.
 /// The numbers of a text, without signs.
 fn numbers(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_ascii_digit() && c != '.').map(|word| word.trim_matches('.'))
 }
 
+/// A decimal number in the text is in the code, in what a cell prints, or in the question itself.
 #[test]
 fn every_number_in_prose_is_produced_by_a_cell() {
     for notebook in notebooks() {
         let mut known: String = notebook.code().map(|cell| cell.source.clone() + "\n").collect();
         for cell in notebook.code().filter(|cell| !cell.is("timing")) {
-            let stored = cell.stored();
-            known += &stored.text;
-            // not a figure's coordinates, among which any short number is found
-            let read = stored.shown.iter().filter(|(kind, _)| kind.as_str() != "image/svg+xml");
-            read.for_each(|(_, content)| known += &(content.clone() + "\n"));
+            known += &cell.stored().into_values().collect::<Vec<_>>().join("\n");
         }
         let questions: Vec<_> = workbook::questions().collect();
         for question in &questions {
             let stated = question.at(&workbook::Options::default()).unwrap();
-            known += &stated.statement;
-            known += &stated.on_the_original.unwrap_or_default();
+            known += &[stated.statement, stated.on_the_original.unwrap_or_default()].concat();
+            known += &stated.latex.concat();
         }
         let known: BTreeSet<&str> = numbers(&known).collect();
-        for number in numbers(&prose(&notebook)) {
+        for number in numbers(&notebook.prose()) {
             let is_a_question = questions.iter().any(|question| question.id == number);
             if number.contains('.') && !is_a_question {
                 assert!(known.contains(number), "{}: {number} comes from no cell", notebook.name);

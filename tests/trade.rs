@@ -540,7 +540,7 @@ fn a_notebook_shows_what_to_mind() {
     ] {
         assert!(shown.plain().contains(remark), "{remark}: {}", shown.plain());
     }
-    assert!(shown.rich().unwrap().1.contains("overtaken by the best"));
+    assert!(shown.html().contains("overtaken by the best"));
 }
 
 #[cfg(feature = "workbook")]

@@ -33,6 +33,7 @@ pub enum Edition {
 pub struct Figure {
     name: String,
     title: String,
+    description: String,
     edition: Edition,
     svg: String,
     csv: String,
@@ -47,6 +48,11 @@ impl Figure {
     /// What the figure shows, in a line.
     pub fn title(&self) -> &str {
         &self.title
+    }
+
+    /// What there is to see, in some sentences for readers who cannot see it.
+    pub(crate) fn description(&self) -> &str {
+        &self.description
     }
 
     /// For whom it was drawn.

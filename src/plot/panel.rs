@@ -420,7 +420,8 @@ impl Plot {
             return Err(Error::Draft { what: name, reason });
         }
         let svg = render::svg(self, &name)?;
-        Ok(Figure { svg, csv: self.csv(), title: self.title.clone(), edition: self.edition, name })
+        let [title, description] = [&self.title, &self.description].map(String::clone);
+        Ok(Figure { svg, csv: self.csv(), title, description, edition: self.edition, name })
     }
 
     /// All points drawn, a row each; the columns low and high are those of bands and error bars. What is no
