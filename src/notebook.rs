@@ -1,10 +1,10 @@
 //! Values shown as what they are in a Jupyter notebook, with [evcxr](https://github.com/evcxr/evcxr)'s Rust
 //! kernel.
 //!
-//! A cell that ends in a [`Figure`], an [`Estimate`], a verdict of [`check`], a [`Table`] or a [`Comparison`] shows
-//! HTML, and plain text where the viewer has nothing better: the kernel calls the type's `evcxr_display`. A figure
-//! is an image with its title and description as alternative text. The five notebooks of the worksheet are in
-//! `notebooks/`.
+//! A cell that ends in a [`Figure`], an [`Estimate`], a verdict of [`check`], a [`Table`] or a [`Comparison`]
+//! shows HTML, and plain text where the viewer has nothing better: the kernel calls the type's
+//! `evcxr_display`. A figure is an image with its title and description as alternative text. The five
+//! notebooks of the worksheet are in `notebooks/`.
 
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
@@ -389,22 +389,6 @@ mod tests {
         let shown = table.show();
         assert!(shown.html().contains("&lt;b&gt;") && !shown.html().contains("<b>"), "{}", shown.html());
         assert!(shown.plain().contains("0 ± 19"), "{}", shown.plain());
-    }
-
-    /// The examples of RFC 4648.
-    #[test]
-    fn base64_is_padded() {
-        for (text, digits) in [
-            ("", ""),
-            ("f", "Zg=="),
-            ("fo", "Zm8="),
-            ("foo", "Zm9v"),
-            ("foob", "Zm9vYg=="),
-            ("fooba", "Zm9vYmE="),
-        ] {
-            assert_eq!(base64(text.as_bytes()), digits);
-        }
-        assert_eq!(base64("θ½?>".as_bytes()), "zrjCvT8+");
     }
 
     #[test]

@@ -452,7 +452,8 @@ proptest! {
             }
             Err(other) => return Err(TestCaseError::fail(format!("{other}"))),
         };
-        prop_assert!(paths.doubt().map(|doubt| doubt.to_string()).is_none_or(|caution| !caution.contains("NaN")
+        prop_assert!(paths.doubt().map(|doubt| doubt.to_string()).is_none_or(|caution|
+            !caution.contains("NaN")
             && !caution.contains("inf ")), "{:?}", paths.doubt());
         let mut rng = Stream::new(seed, 0);
         let mut draws = [f64::NAN; 40];

@@ -119,8 +119,8 @@ fn read(path: &Path) -> Notebook {
 
 /// A cell as statements: the kernel's own commands dropped, and what it ends in shown.
 ///
-/// The last statement begins at the last line that is neither indented nor a closing bracket. It is a value to
-/// be shown where it ends neither in `;` nor, unless it is a block, in `}`.
+/// The last statement begins at the last line that is neither indented nor a closing bracket. It is a value
+/// to be shown where it ends neither in `;` nor, unless it is a block, in `}`.
 fn statements(cell: &str) -> String {
     let lines: Vec<&str> = cell.lines().filter(|line| !line.starts_with(':')).collect();
     let begins = |line: &&str| line.starts_with(|c: char| !c.is_whitespace() && !")]}".contains(c));
@@ -130,8 +130,8 @@ fn statements(cell: &str) -> String {
     if shown { format!("{before}\n({last}).evcxr_display();\n") } else { format!("{before}\n{last}\n") }
 }
 
-/// Estimators for the marked cells: one that is right, what to replace in it by what to make it wrong, and what
-/// is said of the wrong one.
+/// Estimators for the marked cells: one that is right, what to replace in it by what to make it wrong, and
+/// what is said of the wrong one.
 const TURNS: [(char, &str, [&str; 2], &str); 5] = [
     ('1', "-(1.0 - rng.uniform()).ln() / p.rate", ["/ p.rate", "* p.rate"], "multiplied by λ"),
     (

@@ -337,8 +337,8 @@ fn reference(paths: &Paths, seed: u64) -> Result<[f64; 2]> {
 /// against rays, which are the same on every machine, and once against this machine's seconds. None where p
 /// gets no light.
 ///
-/// Ways whose variance may be infinite, [`Estimator::doubt`], are left out; and so is all light where an albedo
-/// is too large for absorption to end a path.
+/// Ways whose variance may be infinite, [`Estimator::doubt`], are left out; and so is all light where an
+/// albedo is too large for absorption to end a path.
 ///
 /// ```no_run
 /// use unbiased::paths::room::{BoxRoom, Scene};
