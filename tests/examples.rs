@@ -840,10 +840,6 @@ fn a_variants_truths_are_those_of_its_estimators() {
                 }
             }
         }
-        assert_eq!(
-            in_the_key,
-            ["1.2", "2.1", "3.1", "3.2", "5.1(i)", "5.1(ii)", "5.1(iii)", "5.2"],
-            "{name}"
-        );
+        assert_eq!(in_the_key, ["1.2", "3.1", "3.2", "5.1(i)", "5.1(ii)", "5.1(iii)", "5.2"], "{name}");
     }
 }

@@ -55,7 +55,7 @@ impl Source {
 const FLOORS: [&[&str]; 13] = [
     &["error", "numbers", "float", "fast", "quantile"],
     &["stream"],
-    &["estimate"],
+    &["estimate", "doubt"],
     &["estimator"],
     &["placement", "run"],
     &["plot"],

@@ -219,8 +219,8 @@ impl Answer {
         };
         let all_alike_and_off = self.z().is_some_and(f64::is_infinite);
         match estimate.draws() {
-            _ if all_alike_and_off && estimate.mean().abs() < 0.01 * truth.abs() => Some(Doubt::NeverVaried),
             draws if draws < FEWEST || all_alike_and_off && draws < FEWEST_ALIKE => Some(Doubt::TooFewDraws),
+            _ if all_alike_and_off && estimate.mean().abs() < 0.01 * truth.abs() => Some(Doubt::NeverVaried),
             _ => None,
         }
     }

@@ -114,8 +114,7 @@ struct Part {
     estimator: &'static str,
 }
 
-const PYTHON: &str = r##"# Question QUESTION, in Python. CHECK stands for
-#   cargo run --release --example check_mine -- --question QUESTION
+const PYTHON: &str = r##"# CHECK is cargo run --release --example check_mine -- --question QUESTION
 #   CHECK --probes | python3 mine.py | CHECK --draws-from -
 import math, random, sys
 
@@ -133,8 +132,7 @@ for line in sys.stdin:
             print(word[0], draw(GIVEN))
 "##;
 
-const CPP: &str = r##"// Question QUESTION, in C++. CHECK stands for
-//   cargo run --release --example check_mine -- --question QUESTION
+const CPP: &str = r##"// CHECK is cargo run --release --example check_mine -- --question QUESTION
 //   c++ -O2 -o mine mine.cpp && CHECK --probes | ./mine | CHECK --draws-from -
 #include <cmath>
 #include <iostream>
