@@ -1,8 +1,7 @@
 //! Question 1.3: what does the x-axis of the cdf stand for?
 //!
 //! The values that can be sampled. So the share of samples at most x must be F(x): counted here at x = 1/λ,
-//! where
-//! F = 1 − 1/e whatever λ is.
+//! where F = 1 − 1/e whatever λ is.
 
 use rand::distr::Distribution;
 use unbiased::inversion::Exponential;

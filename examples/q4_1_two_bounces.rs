@@ -2,8 +2,7 @@
 //!
 //! They are drawn as a path tracer finds them: from p a random direction ω_i leads to p_j, and from there the
 //! light is looked for. The numbers say what such paths carry: the part of the light that reaches the eye
-//! after
-//! exactly two bounces.
+//! after exactly two bounces.
 
 use unbiased::Result;
 use unbiased::lambertian::hemisphere::Hemisphere;

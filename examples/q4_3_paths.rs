@@ -1,10 +1,9 @@
 //! Question 4.3: the estimator for paths.
 //!
 //! L̂_o(p) = 1/n Σ f_r L_o(p_j) cos θ/p(ω) is 3.4's estimator with the light taken from where it left. With
-//! the exact
-//! L_o(p_j) of the light reflected once it gives the two-bounce part; with an unbiased estimate of it, too;
-//! and
-//! if that estimate goes on in the same way, more bounces. The truths of one and two bounces are exact.
+//! the exact L_o(p_j) of the light reflected once it gives the two-bounce part; with an unbiased estimate of
+//! it, too; and if that estimate goes on in the same way, more bounces. The truths of one and two bounces are
+//! exact.
 
 use unbiased::lambertian::hemisphere::Hemisphere::{Cosine, Uniform};
 use unbiased::paths::figures;

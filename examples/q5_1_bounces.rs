@@ -1,8 +1,7 @@
 //! Question 5.1: with p_rr = 4/5, what are P(N = 0), P(N = 2) and E[N]?
 //!
 //! P(N = k) = p_rr^k (1 − p_rr) and E[N] = p_rr/(1 − p_rr). N is drawn twice: coin by coin, as a ray does,
-//! and in one
-//! step by inversion. And the coin keeps every mean: E[X_rr] = E[X].
+//! and in one step by inversion. And the coin keeps every mean: E[X_rr] = E[X].
 
 use unbiased::roulette::Roulette;
 use unbiased::roulette::figures;

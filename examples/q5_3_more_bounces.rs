@@ -1,9 +1,8 @@
 //! Question 5.3: how does a larger p_rr change E[N]?
 //!
 //! E[N] = p_rr/(1 − p_rr) grows without bound. What the bounces cost and buy is seen in a model of light
-//! transport that
-//! has exact answers: every vertex sees the light with probability v, reflects ρ of it, and goes on with
-//! p_rr.
+//! transport that has exact answers: every vertex sees the light with probability v, reflects ρ of it, and
+//! goes on with p_rr.
 
 use unbiased::placement::sobol;
 use unbiased::roulette::figures;

@@ -103,8 +103,8 @@ const LONGEST: usize = 200;
 /// that is no part of an answer.
 ///
 /// `letters` are the question's, each with all its spellings. A decimal is known to half a unit of its last
-/// digit if it was rounded, and to a whole one if it was
-/// cut off there, unless it is one of the `exact` numbers.
+/// digit if it was rounded, and to a whole one if it was cut off there, unless it is one of the `exact`
+/// numbers.
 pub(super) fn read(text: &str, letters: &[&[&str]], exact: &[f64]) -> Option<Vec<Token>> {
     let answer = text.rsplit(['=', '≈', '~']).next()?;
     let answer = answer.trim_end_matches(|c: char| c.is_whitespace() || ".,;".contains(c));

@@ -38,8 +38,7 @@ pub(super) enum Voice {
 const DRAWS: u64 = 1_000_000;
 
 /// Random numbers, or evaluations where they are more, that a row takes at most unless the command line asks
-/// for
-/// draws: some ten seconds of them.
+/// for draws: some ten seconds of them.
 const MOST_WORK: f64 = 1e9;
 
 /// The same for a single draw, which nothing can cut short.
@@ -107,8 +106,7 @@ impl Sheet {
     }
 
     /// Adds a figure of the answer to the row before it. It is made where it is shown: not in the student's
-    /// edition, and
-    /// not by a shard.
+    /// edition, and not by a shard.
     ///
     /// # Errors
     /// Those of making it.
@@ -143,8 +141,7 @@ impl Sheet {
     }
 
     /// Prints the question, before all, and those of the first `done` rows that are not printed yet. Of
-    /// shards it is not known
-    /// before the end whether they belong to these rows.
+    /// shards it is not known before the end whether they belong to these rows.
     fn tell(&self, done: usize) -> Result<()> {
         if self.told.get().is_none() {
             print::heading(self.question, &self.options, self.voice)?;

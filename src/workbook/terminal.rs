@@ -71,8 +71,7 @@ pub(super) fn command_lines(command: &str, width: usize) -> String {
 }
 
 /// A table in lines of at most `width` characters: columns that do not fit stand in further tables below,
-/// with the first
-/// column again, and those that are wider than all of it in lines of text.
+/// with the first column again, and those that are wider than all of it in lines of text.
 pub(super) fn stacked(table: &Table, width: usize) -> Vec<String> {
     let cell = |row: &[String], column: usize| row.get(column).cloned().unwrap_or_default();
     let length = |column: usize| {
