@@ -23,6 +23,7 @@ const LENGTH: Parameter = Parameter {
     name: "length",
     default: Value::Number(0.8),
     help: "the needle's length in lines' distances, in (0, 1]",
+    variants: &[0.3, 0.4, 0.6, 0.7, 0.75, 0.9],
     letter: Some(Letter {
         names: &["l"],
         value: |options| {
@@ -75,6 +76,7 @@ const ANGLE: Parameter = Parameter {
     name: "angle",
     default: Value::Number(30.0),
     help: "the angle α between the disc's centre and its rim, seen from below, in degrees, in (0, 90]",
+    variants: &[15.0, 20.0, 25.0, 40.0, 50.0, 70.0],
     letter: Some(Letter {
         names: &["α", "alpha"],
         value: |options| {

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use unbiased::workbook::{Options, Question, Stated, Value, question, questions};
+use unbiased::workbook::{Options, Parameter, Question, Stated, Value, question, questions};
 
 fn texts(stated: &Stated) -> Vec<String> {
     let Stated { title, statement, hint, formula, latex, answer, wrong, on_the_original } = stated.clone();
@@ -32,27 +32,10 @@ fn numbers(text: &str) -> BTreeSet<String> {
 }
 
 /// A value of its own for every parameter, inside its domain.
-fn other(name: &str) -> f64 {
-    match name {
-        "rate" => 0.37,
-        "u" => 0.41,
-        "x-low" => -3.25,
-        "x-high" => 3.75,
-        "y-low" => -7.5,
-        "y-high" => 6.25,
-        "albedo" => 0.61,
-        "radiance" => 7.3,
-        "a" => 0.43,
-        "width" => 0.17,
-        "wall-albedo" => 0.34,
-        "cube-albedo" => 0.57,
-        "light-half-width" => 0.65,
-        "p-rr" => 0.66,
-        "visibility" => 0.29,
-        "max-k" => 11.0,
-        "n" => 48.0,
-        _ => panic!("no other value of --{name}"),
-    }
+fn other(parameter: &Parameter) -> f64 {
+    let Value::Number(default) = parameter.default else { panic!("--{} is no number", parameter.name) };
+    let own = parameter.letter.map(|letter| letter.generic).filter(|own| *own != default);
+    own.unwrap_or(default + 3.0)
 }
 
 /// Each parameter alone: its new value is in the texts that had the old one, and the old one in none that
@@ -65,7 +48,7 @@ fn no_default_is_left_in_a_text_once_it_is_changed() {
             let Value::Number(default) = parameter.default else { continue };
             // all the others are no defaults already
             let numbers_of = question.parameters.iter().filter(|of| matches!(of.default, Value::Number(_)));
-            let mut given: Vec<_> = numbers_of.map(|of| (of.name, other(of.name))).collect();
+            let mut given: Vec<_> = numbers_of.map(|of| (of.name, other(of))).collect();
             let changed = at(question, &given);
             given.retain(|(name, _)| *name != parameter.name);
             let sheet = at(question, &given);

@@ -17,7 +17,8 @@ mod measure;
 mod unbiased;
 mod wealth;
 
-pub use attempt::{Attempt, measure, seed_of};
+pub(crate) use attempt::seed_of;
+pub use attempt::{Attempt, measure};
 pub use counterexample::Counterexample;
 pub use diagnose::{Candidate, Diagnosis, Finding, Group, diagnose};
 pub use distribution::{Agreement, CELLS, Place, distributed_as, points};

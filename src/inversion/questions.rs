@@ -8,6 +8,7 @@ const RATE: Parameter = Parameter {
     name: "rate",
     default: Value::Number(1.0),
     help: "the rate λ > 0",
+    variants: &[0.2, 0.25, 0.3, 0.4, 0.6, 0.75, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0],
     letter: Some(Letter {
         names: &["λ", "lambda"],
         value: |options| Exponential::new(options.number("rate")).map(|exponential| exponential.rate()),
@@ -134,6 +135,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
                 name: "u",
                 default: Value::Number(0.75),
                 help: "the uniform number u in [0, 1]",
+                variants: &[0.1, 0.15, 0.2, 0.3, 0.35, 0.4, 0.6, 0.65, 0.7, 0.8, 0.85, 0.9, 0.95],
                 letter: Some(U),
             },
         ],

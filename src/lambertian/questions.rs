@@ -9,6 +9,7 @@ const ALBEDO: Parameter = Parameter {
     name: "albedo",
     default: Value::Number(0.8),
     help: "the albedo ρ in [0, 1]",
+    variants: &[0.3, 0.35, 0.4, 0.45, 0.55, 0.6, 0.65, 0.7, 0.75, 0.85, 0.9],
     letter: Some(Letter {
         names: &["ρ", "rho"],
         value: |options| Lambertian::new(options.number("albedo")).map(Lambertian::albedo),
@@ -19,6 +20,7 @@ const RADIANCE: Parameter = Parameter {
     name: "radiance",
     default: Value::Number(1.0),
     help: "the incoming radiance, in W m⁻² sr⁻¹",
+    variants: &[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 12.0, 15.0, 20.0],
     letter: Some(L_I),
 };
 const L_I: Letter = Letter {
@@ -33,6 +35,7 @@ const A: Parameter = Parameter {
     name: "a",
     default: Value::Number(1.0),
     help: "the exponent of the light cos^a θ, above -2",
+    variants: &[0.5, 1.5, 2.0, 2.5, 3.0, 4.0],
     letter: Some(Letter {
         names: &["a"],
         value: |options| CosinePower::new(options.number("a")).map(|sky| sky.a()),
@@ -311,6 +314,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
                 name: "width",
                 default: Value::Number(0.1),
                 help: "the width ε of the ring of light cos θ ≤ ε, in (0, 1]",
+                variants: &[0.05, 0.15, 0.2, 0.25, 0.3, 0.4],
                 letter: Some(Letter {
                     names: &["ε", "epsilon"],
                     value: |options| RingLight::new(options.number("width")).map(|ring| ring.width()),

@@ -13,6 +13,7 @@ const WALL_ALBEDO: Parameter = Parameter {
     name: "wall-albedo",
     default: Value::Number(0.5),
     help: "the albedo ρ of walls, floor and ceiling, in [0, 1]",
+    variants: &[0.3, 0.35, 0.4, 0.45, 0.55, 0.6, 0.65, 0.7],
     letter: Some(Letter {
         names: &["ρ_wall"],
         value: |options| room(options).map(|scene| scene.wall_albedo),
@@ -23,6 +24,7 @@ const CUBE_ALBEDO: Parameter = Parameter {
     name: "cube-albedo",
     default: Value::Number(0.8),
     help: "the albedo ρ of the cube, in [0, 1]",
+    variants: &[0.25, 0.55, 0.6, 0.65, 0.75, 0.85, 0.9],
     letter: Some(Letter {
         names: &["ρ_cube"],
         value: |options| room(options).map(|scene| scene.cube_albedo),
@@ -33,6 +35,7 @@ const RADIANCE: Parameter = Parameter {
     name: "radiance",
     default: Value::Number(10.0),
     help: "the light's radiance L_e, in W m⁻² sr⁻¹",
+    variants: &[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 12.0, 15.0, 20.0],
     letter: Some(Letter {
         names: &["L_e"],
         value: |options| room(options).map(|scene| scene.radiance),
@@ -43,6 +46,7 @@ const LIGHT_HALF_WIDTH: Parameter = Parameter {
     name: "light-half-width",
     default: Value::Number(0.5),
     help: "half the light's side in metres, from 0 (no light) to 2",
+    variants: &[0.3, 0.4, 0.6, 0.7, 0.75, 0.9],
     letter: Some(Letter {
         names: &["s"],
         value: |options| room(options).map(|scene| scene.light_half_width),
@@ -53,6 +57,7 @@ const POINT: Parameter = Parameter {
     name: "point",
     default: Value::Point([0.0, 0.0, 1.0]),
     help: "the point p on a face of the cube or the room, in metres",
+    variants: &[],
     letter: None,
 };
 
@@ -193,6 +198,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
                 name: "bounces",
                 default: Value::Limit(Some(2)),
                 help: "the number of bounces K, from 0 to 64, or all",
+                variants: &[],
                 letter: None,
             },
             POINT,

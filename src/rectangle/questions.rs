@@ -5,9 +5,18 @@ use crate::rectangle::Rectangle;
 use crate::workbook::{Letter, Number, Options, Parameter, Question, Value, Wrong};
 use crate::workbook::{classic, slip};
 
-const fn end(name: &'static str, default: f64, help: &'static str, letter: Letter) -> Parameter {
-    Parameter { name, default: Value::Number(default), help, letter: Some(letter) }
+const fn end(
+    name: &'static str,
+    default: f64,
+    help: &'static str,
+    variants: &'static [f64],
+    letter: Letter,
+) -> Parameter {
+    Parameter { name, default: Value::Number(default), help, variants, letter: Some(letter) }
 }
+
+const LOW_ENDS: &[f64] = &[-4.0, -3.0, -2.5, -1.5, -1.0, -0.5, 0.5, 1.0, 1.5];
+const HIGH_ENDS: &[f64] = &[2.0, 2.5, 3.0, 3.5, 4.5, 5.0, 6.0, 7.0];
 
 fn ends(options: &Options) -> Result<[[f64; 2]; 2]> {
     let [x, y] = [["x-low", "x-high"], ["y-low", "y-high"]].map(|ends| ends.map(|end| options.number(end)));
@@ -104,15 +113,16 @@ pub(crate) const QUESTIONS: &[Question] = &[Question {
     example: "q2_1_square",
     module: "rectangle",
     parameters: &[
-        end("x-low", -2.0, "where the rectangle begins in x", X_LOW),
-        end("x-high", 2.0, "where it ends in x, above --x-low", X_HIGH),
-        end("y-low", -2.0, "where it begins in y", Y_LOW),
-        end("y-high", 2.0, "where it ends in y, above --y-low", Y_HIGH),
+        end("x-low", -2.0, "where the rectangle begins in x", LOW_ENDS, X_LOW),
+        end("x-high", 2.0, "where it ends in x, above --x-low", HIGH_ENDS, X_HIGH),
+        end("y-low", -2.0, "where it begins in y", LOW_ENDS, Y_LOW),
+        end("y-high", 2.0, "where it ends in y, above --y-low", HIGH_ENDS, Y_HIGH),
         Parameter {
             name: "n",
             default: Value::Number(32.0),
             help: "values of each of x and y; also the grid's side, and the root of the number of Sobol \
                    points: 1 to 256",
+            variants: &[],
             letter: None,
         },
     ],

@@ -8,6 +8,7 @@ const ALBEDO: Parameter = Parameter {
     name: "albedo",
     default: Value::Number(0.8),
     help: "the albedo ρ of every vertex, in [0, 1)",
+    variants: &[0.3, 0.35, 0.4, 0.45, 0.55, 0.6, 0.65, 0.7, 0.75, 0.85, 0.9],
     letter: Some(Letter {
         names: &["ρ", "rho"],
         value: |options| LightModel::new(options.number("albedo"), 1.0).map(|model| model.albedo()),
@@ -18,6 +19,7 @@ const VISIBILITY: Parameter = Parameter {
     name: "visibility",
     default: Value::Number(0.5),
     help: "the probability v that a vertex sees the light, in [0, 1]",
+    variants: &[0.2, 0.25, 0.3, 0.4, 0.6, 0.7, 0.75],
     letter: Some(Letter {
         names: &["v"],
         value: |options| LightModel::new(0.0, options.number("visibility")).map(|model| model.visibility()),
@@ -28,6 +30,7 @@ const P_RR: Parameter = Parameter {
     name: "p-rr",
     default: Value::Number(0.8),
     help: "the continuation probability p_rr in (0, 1)",
+    variants: &[0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9],
     letter: Some(Letter {
         names: &["p_rr", "prr", "p", "q"],
         value: |options| Roulette::new(options.number("p-rr")).map(|roulette| roulette.p_rr()),
@@ -198,6 +201,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
                 name: "max-k",
                 default: Value::Number(8.0),
                 help: "the last vertex of truncated paths",
+                variants: &[4.0, 6.0, 10.0, 12.0],
                 letter: None,
             },
         ],

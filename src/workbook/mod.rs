@@ -115,6 +115,8 @@ pub struct Parameter {
     pub default: Value,
     /// What it is, with its domain.
     pub help: &'static str,
+    /// The values that it may have in a variant, short ones; none if it is not varied.
+    pub variants: &'static [f64],
     /// What it is called in formulas, if it is a number.
     pub letter: Option<Letter>,
 }
@@ -344,7 +346,9 @@ fn one_for_each(file: &Path, asked: &[(&'static Question, AnswerFn)], options: &
         (own.quiet, own.one_figure) = (true, true);
         own.with_out(|| one_worksheet(asked, &[], &own))?;
         print::line(&format!("{name}: {}", own.out.display()))?;
-        for [question, what, formula, truth] in variant::key(&own)? {
+        for [question, what, formula, truth] in
+            variant::key(asked.iter().map(|(question, _)| *question), &own)?
+        {
             key.write_record([name, &question, &what, &formula, &truth])
                 .map_err(|error| failed(error.to_string()))?;
         }

@@ -6,30 +6,9 @@
 //! every other.
 
 use super::options::Options;
-use super::{Number, Question, Value, questions};
+use super::{Number, Question};
 use crate::error::{Error, Result};
 use crate::stream::mix;
-
-/// The values that a parameter may have in a variant. What is not listed stays as on the sheet.
-fn values(name: &str) -> &'static [f64] {
-    match name {
-        "rate" => &[0.2, 0.25, 0.3, 0.4, 0.6, 0.75, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0],
-        "u" => &[0.1, 0.15, 0.2, 0.3, 0.35, 0.4, 0.6, 0.65, 0.7, 0.8, 0.85, 0.9, 0.95],
-        "x-low" | "y-low" => &[-4.0, -3.0, -2.5, -1.5, -1.0, -0.5, 0.5, 1.0, 1.5],
-        "x-high" | "y-high" => &[2.0, 2.5, 3.0, 3.5, 4.5, 5.0, 6.0, 7.0],
-        "albedo" => &[0.3, 0.35, 0.4, 0.45, 0.55, 0.6, 0.65, 0.7, 0.75, 0.85, 0.9],
-        "radiance" => &[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 12.0, 15.0, 20.0],
-        "a" => &[0.5, 1.5, 2.0, 2.5, 3.0, 4.0],
-        "width" => &[0.05, 0.15, 0.2, 0.25, 0.3, 0.4],
-        "wall-albedo" => &[0.3, 0.35, 0.4, 0.45, 0.55, 0.6, 0.65, 0.7],
-        "cube-albedo" => &[0.25, 0.55, 0.6, 0.65, 0.75, 0.85, 0.9],
-        "light-half-width" => &[0.3, 0.4, 0.6, 0.7, 0.75, 0.9],
-        "p-rr" => &[0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9],
-        "visibility" => &[0.2, 0.25, 0.3, 0.4, 0.6, 0.7, 0.75],
-        "max-k" => &[4.0, 6.0, 10.0, 12.0],
-        _ => &[],
-    }
-}
 
 /// Tries until one is fair; it takes a few.
 const TRIES: u64 = 10_000;
@@ -76,17 +55,16 @@ impl Options {
             .chain([0])
             .chain(name.bytes())
             .fold(0, |seed, byte| mix(seed ^ u64::from(byte)));
-        let free = question.parameters.iter().filter(|of| matches!(of.default, Value::Number(_)));
-        let free: Vec<_> =
-            free.map(|of| (of.name, values(of.name))).filter(|(_, all)| !all.is_empty()).collect();
+        let free: Vec<_> = question.parameters.iter().filter(|of| !of.variants.is_empty()).collect();
         for attempt in 0..TRIES {
             let mut options = Self::default();
             let mut word = mix(seed ^ mix(attempt));
-            for (parameter, all) in &free {
+            for parameter in &free {
                 word = mix(word);
                 // fewer than 20 of 2⁶⁴: as good as uniform
-                let value = all.get((word % all.len() as u64) as usize).copied().unwrap_or(f64::NAN);
-                options.set(question, parameter, &value.to_string())?;
+                let place = (word % parameter.variants.len() as u64) as usize;
+                let value = parameter.variants.get(place).copied().unwrap_or(f64::NAN);
+                options.set(question, parameter.name, &value.to_string())?;
             }
             if is_fair(question, &options) {
                 self.take_for(question, options);
@@ -151,10 +129,13 @@ pub(super) fn folder(name: &str) -> String {
     folder.trim().replace(' ', "_")
 }
 
-/// All questions' numbers in a variant: the rows of a key, as question, what and truth.
-pub(super) fn key(options: &Options) -> Result<Vec<[String; 4]>> {
+/// The questions' numbers in a variant: the rows of a key, as question, what, formula and truth.
+pub(super) fn key(
+    questions: impl Iterator<Item = &'static Question>,
+    options: &Options,
+) -> Result<Vec<[String; 4]>> {
     let mut rows = Vec::new();
-    for question in questions() {
+    for question in questions {
         for number in question.numbers {
             let truths = question.evaluate(number.formula, options)?;
             let truth = truths.first().copied().unwrap_or(f64::NAN);
