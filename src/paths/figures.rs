@@ -432,37 +432,14 @@ fn error_figure(
         let y = Axis::log("RMSE/truth", bottom, top);
         let y = if shift < 10.0 { y.with_ticks(ticks) } else { y };
         let mut panel = Panel::new(heading, Axis::log(unit, low, high), y);
-        let up = (top / bottom).powf(0.04);
-        let (mut falling, mut level) = (Vec::new(), Vec::new());
         for series in all {
             let Series { label, ink, marker, .. } = *series;
             let work = cost(series);
             panel.marks(label, ink, marker, series.measured.iter().map(|[n, rmse]| [n * work, *rmse]));
-            if series.found_none() {
-                level.push((ink, label, 1.0));
-                continue;
+            if !series.found_none() {
+                panel.curve(label, ink, |c| if c >= work { series.rmse(c / work) } else { f64::NAN });
             }
-            panel.curve(label, ink, |c| if c >= work { series.rmse(c / work) } else { f64::NAN });
-            if series.bias == 0.0 {
-                falling.push((ink, label, series.spread * work.sqrt()));
-            } else {
-                level.push((ink, label, series.bias.abs()));
-            }
-        }
-        // of two lines close to each other the upper one has its label on the right, where the lines fall
-        // away from it
-        falling.sort_by(|a, b| b.2.total_cmp(&a.2));
-        for (rank, (ink, label, once)) in falling.into_iter().enumerate() {
-            let past_the_points = low * (high / low).powf(if rank < 2 { 0.55 } else { 0.6 });
-            let side = if rank % 2 == 0 { Side::Right } else { Side::Left };
-            panel.text(ink, [past_the_points, (once / past_the_points.sqrt()).max(bottom * up)], side, label);
-        }
-        level.sort_by(|a, b| b.2.total_cmp(&a.2));
-        let mut above = f64::INFINITY;
-        for (ink, label, at) in level {
-            let beside = if at * up.powf(1.6) < above { at * up } else { at / up };
-            panel.text(ink, [high, beside], Side::Left, label);
-            above = at;
+            panel.named(&format!("{} {label}", marker.sign()));
         }
         panels.push(panel);
     }
