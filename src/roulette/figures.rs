@@ -145,7 +145,8 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
     let variance = |q: f64| paths(q).map_or(f64::NAN, |paths| paths.variance());
     let cost = |q: f64| paths(q).map_or(f64::NAN, |paths| paths.cost());
     let product = |q: f64| variance(q) * cost(q);
-    let low = (edge - 0.25).max(0.0);
+    // of the axis at most 0.3 shaded
+    let low = (edge - 0.43 * (1.0 - edge)).max(0.0);
     // from where all three are finite to near 1, without the outermost parts, where they grow without bound
     let values: Vec<f64> = (4..98)
         .map(|percent| edge + 0.01 * f64::from(percent) * (1.0 - edge))
