@@ -461,10 +461,10 @@ fn assert_off_lines(figure: &Figure, why: &str) {
 
 #[test]
 fn figures_of_roulette_read_for_every_model() {
-    for albedo in [0.0, 0.01, 0.3, 0.5, 0.8, 0.9, 0.99] {
+    for albedo in [0.0, 0.01, 1.0 / 3.0, 0.5, 0.8, 0.9, 0.99] {
         for visibility in [0.01, 0.2, 0.5, 1.0] {
             let model = LightModel::new(albedo, visibility).unwrap();
-            for q in [0.01, 0.5, 0.8, 0.9, 0.99] {
+            for q in [0.01, 0.5, 6.0 / 7.0, 0.9, 0.99] {
                 let why = format!("ρ = {albedo}, v = {visibility}, q = {q}");
                 for figure in [
                     roulette::figures::roulette_trade(&model, q).unwrap(),

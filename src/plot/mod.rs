@@ -66,7 +66,7 @@ impl Figure {
         &self.csv
     }
 
-    /// The same on a slide of 16 to 9, below its title in large type: `name_slide`, with no numbers of its own.
+    /// The same on a slide of 16 to 9, below its title in large type: `name_slide`. It has no CSV.
     pub fn slide(&self) -> Self {
         let name = format!("{}_slide", self.name);
         Self { svg: slide::svg(self, &name), csv: String::new(), name, ..self.clone() }

@@ -464,6 +464,19 @@ pub(crate) struct Plot {
 }
 
 impl Plot {
+    /// The solution's figure of these panels: a column wide if it is one, else in a row across the page.
+    pub fn of(name: &'static str, height_mm: f64, panels: Vec<Panel>) -> Self {
+        let width = if panels.len() > 1 { Width::Page } else { Width::Column };
+        let (title, description) = (String::new(), String::new());
+        let (edition, columns) = (Edition::Solution, panels.len());
+        Self { name, title, description, edition, width, height_mm, columns, panels }
+    }
+
+    /// The same, with its title and what a reader who cannot see it should know.
+    pub fn titled(self, title: impl Into<String>, description: impl Into<String>) -> Self {
+        Self { title: title.into(), description: description.into(), ..self }
+    }
+
     /// Draws it.
     pub fn draw(&self) -> Result<Figure> {
         let suffix = match self.edition {

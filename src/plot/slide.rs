@@ -17,9 +17,9 @@ pub(super) fn svg(figure: &Figure, name: &str) -> String {
     let line = 1.25 * f64::from(size);
     let mut body = String::new();
     for (row, text) in lines.iter().enumerate() {
-        body += &render::title_line(0.5 * SIZE[0], MARGIN + (row as f64 + 0.8) * line, size, text);
+        body += &render::title_line(0.5 * SIZE[0], 0.5 * MARGIN + (row as f64 + 0.8) * line, size, text);
     }
-    let top = MARGIN + line * lines.len() as f64;
+    let top = 0.75 * MARGIN + line * lines.len() as f64;
     let (root, drawn) = figure.svg.split_once("</desc>\n").unwrap_or_default();
     let view = root.split_once("viewBox=\"").and_then(|(_, rest)| rest.split_once('"'));
     // its own size gives way to the room that there is

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::estimator::Estimator;
 use crate::numbers::{equals, typeset};
-use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side, Width};
+use crate::plot::{Axis, Figure, Ink, Marker, Panel, Plot, Side};
 use crate::roulette::{LightModel, Roulette};
 use crate::run::{Budget, estimate};
 use crate::stream::Stream;
@@ -65,20 +65,12 @@ pub fn bounces(p_rr: [f64; 2], draws: usize, seed: u64) -> Result<Figure> {
         panels.push(panel);
     }
     let [a, b] = p_rr.map(|p| typeset(p, 12));
-    Plot {
-        name: "5_1_bounces",
-        title: format!("The number of bounces at p_rr = {a} and {b}"),
-        description: format!(
+    Plot::of("5_1_bounces", 62.0, panels)
+        .titled(format!("The number of bounces at p_rr = {a} and {b}"), format!(
             "Two bar charts of P(N = k) = pᵏ(1 − p), for p = {a} and p = {b}, falling geometrically; points \
              with 95 % intervals are the shares of {draws} simulated rays (seed {seed})."
-        ),
-        edition: Edition::Solution,
-        width: Width::Page,
-        height_mm: 62.0,
-        columns: 2,
-        panels,
-    }
-    .draw()
+        ))
+        .draw()
 }
 
 /// 5.3: E\[N\] and its standard deviation against p_rr, with those of two p_rr marked.
@@ -116,21 +108,13 @@ pub fn mean_bounces(p_rr: [f64; 2], draws: u64, seed: u64) -> Result<Figure> {
         panel.label(Ink::Black, [p, mean], &format!("E[N] {} at {}", equals(mean, 3), typeset(p, 3)));
     }
     let [a, b] = p_rr.map(|p| typeset(p, 12));
-    Plot {
-        name: "5_3_mean_bounces",
-        title: "E[N] grows with p_rr, without bound".into(),
-        description: format!(
+    Plot::of("5_3_mean_bounces", 62.0, vec![panel])
+        .titled("E[N] grows with p_rr, without bound", format!(
             "E[N] = p/(1 − p) against p, rising from 0 slowly and then steeply towards p = 1, in a band of \
              one standard deviation √p/(1 − p) to both sides. Points: means of {draws} draws (seed {seed}); \
              those at {a} and {b} have their E[N] beside them."
-        ),
-        edition: Edition::Solution,
-        width: Width::Column,
-        height_mm: 62.0,
-        columns: 1,
-        panels: vec![panel],
-    }
-    .draw()
+        ))
+        .draw()
 }
 
 /// 5.3: variance, cost and their product against the continuation probability q, with q ≤ ρ² shaded, where
@@ -157,7 +141,7 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
     let most = values.iter().copied().fold(4.0, f64::max);
     let (albedo, v) = (typeset(albedo, 12), typeset(model.visibility(), 12));
     let mut panel = Panel::new(
-        &format!("ρ = {albedo}, v = {v}"),
+        &format!("ρ {}, v {}", equals(model.albedo(), 4), equals(model.visibility(), 4)),
         Axis::linear("continuation probability q", low, 1.0),
         Axis::log("value (dimensionless)", least * (least / most).powf(0.12), 2.0 * most),
     );
@@ -184,24 +168,19 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
         let middle = panel.y.value(0.8);
         panel.label(Ink::Black, [0.5 * (low + edge), middle], "q ≤ ρ²:\ninfinite\nvariance");
     }
-    Plot {
-        name: "5_3_roulette_trade",
-        title: format!("What roulette costs and buys: the product is least at q* {}", equals(best, 3)),
-        description: format!(
-            "Variance, cost 1/(1 − q) and their product against q, logarithmic, for ρ = {albedo} and v = \
+    Plot::of("5_3_roulette_trade", 68.0, vec![panel])
+        .titled(
+            format!("What roulette costs and buys: the product is least at q* {}", equals(best, 3)),
+            format!(
+                "Variance, cost 1/(1 − q) and their product against q, logarithmic, for ρ = {albedo} and v = \
              {v}. The variance is infinite up to q = ρ² {}, shaded, and falls; the cost rises; the \
              product is least at q* {}. Marked: q = {} and q*.",
-            equals(edge, 4),
-            equals(best, 4),
-            typeset(q, 12)
-        ),
-        edition: Edition::Solution,
-        width: Width::Column,
-        height_mm: 68.0,
-        columns: 1,
-        panels: vec![panel],
-    }
-    .draw()
+                equals(edge, 4),
+                equals(best, 4),
+                typeset(q, 12)
+            ),
+        )
+        .draw()
 }
 
 /// 5.3: the root mean square error against the number of vertices, of roulette and of paths truncated after k
@@ -229,7 +208,7 @@ pub fn truncation(model: &LightModel, q: f64, max_k: u64, replicates: u64, seed:
     let (least, most) = if exact { (0.1, 1.0) } else { (least, most) };
     let [albedo, v, kept] = [model.albedo(), model.visibility(), q].map(|value| typeset(value, 12));
     let mut panel = Panel::new(
-        &format!("ρ = {albedo}, v = {v}, q = {kept}"),
+        &format!("ρ {}, v {}, q {}", equals(model.albedo(), 4), equals(model.visibility(), 4), equals(q, 4)),
         Axis::log("vertices C", first, last),
         Axis::log("RMSE (units of the light)", 0.6 * least, 2.0 * most),
     );
@@ -282,20 +261,12 @@ pub fn truncation(model: &LightModel, q: f64, max_k: u64, replicates: u64, seed:
             panel.named("● roulette: infinite variance");
         }
     }
-    Plot {
-        name: "5_3_truncation",
-        title: "Truncated paths stop improving; roulette overtakes them".into(),
-        description: format!(
+    Plot::of("5_3_truncation", 68.0, vec![panel])
+        .titled("Truncated paths stop improving; roulette overtakes them", format!(
             "Root mean square error against the number of vertices C, both logarithmic, for ρ = {albedo}, v \
              = {v}. Roulette with q = {kept} falls as 1/√C. Paths cut after k ≤ {short} and k ≤ {long} level \
              off at \
              their bias; the crossings are marked. Points: {replicates} runs each, seeds from {seed}."
-        ),
-        edition: Edition::Solution,
-        width: Width::Column,
-        height_mm: 68.0,
-        columns: 1,
-        panels: vec![panel],
-    }
-    .draw()
+        ))
+        .draw()
 }
