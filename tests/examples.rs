@@ -373,12 +373,7 @@ fn both_editions_are_made_by_one_command_and_say_which_they_are() {
 fn slides_are_made_where_they_are_asked_for() {
     let out = folder("slides");
     for (example, figures) in [("q1_2_one_sample", 1), ("extremes", 2)] {
-        let output = run(example, &["--slides", "--json", "--out", out.to_str().unwrap()]);
-        let rows: Vec<Value> = String::from_utf8(output.stdout)
-            .unwrap()
-            .lines()
-            .map(|line| serde_json::from_str(line).unwrap())
-            .collect();
+        let rows = rows(&run(example, &["--slides", "--json", "--out", out.to_str().unwrap()]));
         let named: Vec<&str> = rows
             .iter()
             .flat_map(|row| row["figures"].as_array().unwrap())
@@ -535,7 +530,8 @@ fn help_lists_every_option() {
             let output = run(example, &[flag]);
             let text = String::from_utf8(output.stdout).unwrap();
             assert!(output.status.success());
-            let common = ["--draws", "--error", "--seconds", "--seed", "--threads", "--out", "--json"];
+            let common =
+                ["--draws", "--error", "--seconds", "--seed", "--threads", "--out", "--slides", "--json"];
             for option in common.iter().chain(&["--edition", "--hint"]).chain(own) {
                 assert!(text.contains(option), "{example}: {option}");
             }
@@ -543,8 +539,8 @@ fn help_lists_every_option() {
     }
     // those beside the questions list what they take, and nothing else
     for (example, listed) in [
-        ("trade", &["--seconds", "--seed", "--out", "--json"][..]),
-        ("extremes", &["--seed", "--out", "--json"]),
+        ("trade", &["--seconds", "--seed", "--out", "--slides", "--json"][..]),
+        ("extremes", &["--seed", "--out", "--slides", "--json"]),
     ] {
         let text = String::from_utf8(run(example, &["--help"]).stdout).unwrap();
         let options = text.lines().filter_map(|line| line.trim().split(' ').next());

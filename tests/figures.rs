@@ -550,8 +550,7 @@ fn a_slide_has_the_figure_below_its_title() {
         assert!(all >= 2 && ids.len() == all, "{ids:?}");
         // the title, in at most three lines above the figure, and inside
         let (head, drawn) = svg.split_once("</desc>").unwrap().1.split_once("<svg ").unwrap();
-        let lines =
-            head.split("</text>").filter_map(|line| Some(line.split_once("<text")?.1.split_once('>')?));
+        let lines = head.split("</text>").filter_map(|line| line.split_once("<text")?.1.split_once('>'));
         let lines: Vec<(&str, &str)> = lines.collect();
         let title = lines.iter().map(|(_, text)| *text).collect::<Vec<_>>().join(" ");
         assert_eq!(title.replace("&lt;", "<").replace("&gt;", ">"), figure.title());
