@@ -19,7 +19,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
 
     let seed = sheet.seed();
     sheet.row("bounces, variance and cost");
-    sheet.figure(|| figures::mean_bounces(100_000, seed))?;
+    sheet.figure(|| figures::mean_bounces([p_rr, 0.2], 100_000, seed))?;
     sheet.figure(|| figures::roulette_trade(&model, p_rr))?;
     sheet.figure(|| figures::truncation(&model, p_rr, max_k, 200, seed))?;
     for p_rr in [0.2, 0.5, 0.8, 0.9, 0.99] {

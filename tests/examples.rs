@@ -321,6 +321,12 @@ fn the_pages_have_everything_and_need_nothing() {
         [&key, &trade, &extremes].map(|page| page.matches("<svg").count()).iter().sum::<usize>(),
         drawn
     );
+    // what is of interest beside a question is not the figure printed with it
+    for name in ["2_1_running_mean", "check_wealth"] {
+        let before = key.split(&format!("figure-{name}-title")).next().unwrap();
+        let [opened, closed] = ["<details>", "</details>"].map(|tag| before.matches(tag).count());
+        assert_eq!(opened, closed + 1, "{name} is printed");
+    }
     assert!(key.matches("<math").count() >= unbiased::workbook::questions().count());
     for page in [&key, &trade, &extremes] {
         for tag in ["<script", "<link", "<img", "<iframe", "@import", "url(\"", "url(h"] {
@@ -361,6 +367,22 @@ fn both_editions_are_made_by_one_command_and_say_which_they_are() {
     let (alone, _, _) = student();
     let sheet = |folder: &Path| fs::read_to_string(folder.join("student.html")).unwrap();
     assert!(sheet(alone) == sheet(&out));
+}
+
+#[test]
+fn slides_are_made_where_they_are_asked_for() {
+    let out = folder("slides");
+    for (example, figures) in [("q1_2_one_sample", 1), ("extremes", 2)] {
+        let rows = rows(&run(example, &["--slides", "--json", "--out", out.to_str().unwrap()]));
+        let named: Vec<&str> = rows
+            .iter()
+            .flat_map(|row| row["figures"].as_array().unwrap())
+            .filter_map(Value::as_str)
+            .collect();
+        let slides = named.iter().filter(|path| path.ends_with("_slide.svg"));
+        assert_eq!(slides.count(), figures, "{example}: {named:?}");
+        assert!(named.iter().all(|path| Path::new(path).exists() && !path.ends_with("_slide.csv")));
+    }
 }
 
 #[test]
@@ -518,8 +540,8 @@ fn help_lists_every_option() {
     }
     // those beside the questions list what they take, and nothing else
     for (example, listed) in [
-        ("trade", &["--seconds", "--seed", "--out", "--json"][..]),
-        ("extremes", &["--seed", "--out", "--json"]),
+        ("trade", &["--seconds", "--seed", "--out", "--slides", "--json"][..]),
+        ("extremes", &["--seed", "--out", "--slides", "--json"]),
     ] {
         let text = String::from_utf8(run(example, &["--help"]).stdout).unwrap();
         assert_eq!(options(&text, "    ").collect::<Vec<_>>(), listed);

@@ -423,7 +423,7 @@ fn figures_of_directions_and_bounces_read_whatever_is_drawn() {
         let why = format!("{draws} draws");
         assert_drawn_or_refused(lambertian::figures::variance_against_exponent(draws, 1), &why);
         assert_drawn_or_refused(lambertian::figures::variance_against_ring(draws, 1), &why);
-        assert_drawn_or_refused(roulette::figures::mean_bounces(draws, 1), &why);
+        assert_drawn_or_refused(roulette::figures::mean_bounces([0.8, 0.2], draws, 1), &why);
         assert_drawn_or_refused(paths::figures::occluded_fraction(draws, 1), &why);
     }
     for p in [1e-300, 1e-6, 0.2, 0.5, 0.8, 0.83, 0.987_654_321, 0.9999, 1.0 - 1e-9] {
@@ -436,12 +436,146 @@ fn figures_of_directions_and_bounces_read_whatever_is_drawn() {
     }
 }
 
-/// At the sheet's own model; far from it some of the labels meet, or leave the figure.
+/// That no text of a figure lies on a line of it.
+fn assert_off_lines(figure: &Figure, why: &str) {
+    let boxes = boxes(figure);
+    for line in figure.svg().split("<polyline").skip(1) {
+        let points = attribute(line.split_once('>').unwrap().0, "points").split_whitespace();
+        let points: Vec<[f64; 2]> = points
+            .map(|point| point.split_once(',').unwrap())
+            .map(|(x, y)| [x, y].map(|number| number.parse().unwrap()))
+            .collect();
+        for (pair, (text, [x, y, half, high])) in
+            points.windows(2).flat_map(|pair| boxes.iter().map(move |text| (pair, text)))
+        {
+            // steps so small that none jumps over a box
+            let steps = ((pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]) / high).ceil() as u32 + 1;
+            let on = (0..=steps).map(|i| f64::from(i) / f64::from(steps)).any(|t| {
+                let [a, b] = [0, 1].map(|axis| pair[0][axis] + t * (pair[1][axis] - pair[0][axis]));
+                (a - x).abs() < *half && (b - y).abs() < *high
+            });
+            assert!(!on, "{}, {why}: “{text}” lies on a line", figure.name());
+        }
+    }
+}
+
 #[test]
-fn figures_of_roulette_read_on_the_sheet() {
+fn figures_of_roulette_read_for_every_model() {
+    for albedo in [0.0, 0.01, 1.0 / 3.0, 0.5, 0.8, 0.9, 0.99] {
+        for visibility in [0.01, 0.2, 0.5, 1.0] {
+            let model = LightModel::new(albedo, visibility).unwrap();
+            for q in [0.01, 0.5, 6.0 / 7.0, 0.9, 0.99] {
+                let why = format!("ρ = {albedo}, v = {visibility}, q = {q}");
+                for figure in [
+                    roulette::figures::roulette_trade(&model, q).unwrap(),
+                    roulette::figures::truncation(&model, q, 8, 1, 1).unwrap(),
+                ] {
+                    assert_legible(&figure, &why);
+                    assert_off_lines(&figure, &why);
+                    assert!(boxes(&figure).len() > 8, "{why}: nothing is said");
+                }
+            }
+        }
+    }
+    for p in [0.01, 0.1, 0.2, 0.5, 0.8, 0.9, 0.95, 0.99] {
+        for beside in [0.01, 0.2, 0.79, 0.99] {
+            let why = format!("p_rr = {p} and {beside}");
+            let mean = roulette::figures::mean_bounces([p, beside], 1000, 1).unwrap();
+            let bars = roulette::figures::bounces([p, beside], 1000, 1).unwrap();
+            for figure in [&mean, &bars] {
+                assert_legible(figure, &why);
+                assert_off_lines(figure, &why);
+            }
+            let marked = boxes(&mean).iter().filter(|(text, _)| text.contains(" at ")).count();
+            assert_eq!(marked, if p == beside { 1 } else { 2 }, "{why}");
+        }
+    }
+    let mean = roulette::figures::mean_bounces([0.75, 0.2], 1000, 1).unwrap();
+    assert!(mean.svg().contains("E[N] = 3 at 0.75") && mean.svg().contains("E[N] = 0.25 at 0.2"));
+}
+
+#[test]
+fn figures_of_errors_read_in_every_room() {
+    let sheet = Scene::default();
+    for scene in [
+        sheet,
+        Scene { wall_albedo: 0.2, ..sheet },
+        Scene { wall_albedo: 1.0, ..sheet },
+        Scene { light_half_width: 0.1, ..sheet },
+        Scene { point: [1.5, 0.0, 0.0], ..sheet },
+    ] {
+        for figure in paths::figures::path_errors(&BoxRoom::new(scene).unwrap(), 1).unwrap() {
+            let why = format!("{scene:?}");
+            assert_legible(&figure, &why);
+            assert_off_lines(&figure, &why);
+        }
+    }
+}
+
+#[test]
+fn a_slide_has_the_figure_below_its_title() {
+    let room = BoxRoom::new(Scene::default()).unwrap();
     let model = LightModel::new(0.8, 0.5).unwrap();
-    assert_drawn_or_refused(roulette::figures::roulette_trade(&model, 0.8), "the trade");
-    assert_drawn_or_refused(roulette::figures::truncation(&model, 0.8, 8, 2, 1), "truncation");
+    let column = roulette::figures::roulette_trade(&model, 0.8).unwrap();
+    let page = rectangle::figures::sampling_errors(Rectangle::new([-2.0, 2.0], [-2.0, 2.0]).unwrap(), 1);
+    let long = lambertian::figures::betting(1).unwrap();
+    for (figure, width) in [(column, "85mm"), (page.unwrap(), "170mm"), (long, "170mm")] {
+        assert_eq!(attribute(figure.svg(), "width"), width);
+        let slide = figure.slide();
+        let svg = slide.svg();
+        assert_eq!(slide.name(), format!("{}_slide", figure.name()));
+        assert_eq!((attribute(svg, "width"), attribute(svg, "height")), ("338.7mm", "190.5mm"));
+        let numbers = |tag: &str| {
+            let view = attribute(tag, "viewBox").split(' ').map(|number| number.parse().unwrap());
+            view.collect::<Vec<f64>>()
+        };
+        let view = numbers(svg);
+        assert_eq!(view[2] / view[3], 16.0 / 9.0);
+        // every element is closed, in the order in which they were opened
+        let mut open = Vec::new();
+        for tag in svg.split('<').skip(1).map(|rest| rest.split_once('>').unwrap().0) {
+            let name = tag.split([' ', '\n']).next().unwrap();
+            if let Some(closed) = name.strip_prefix('/') {
+                assert_eq!(open.pop(), Some(closed), "{tag}");
+            } else if !tag.ends_with('/') {
+                open.push(name);
+            }
+        }
+        assert!(open.is_empty() && !svg.split('&').skip(1).any(|rest| !rest.contains(';')));
+        let mut ids: Vec<_> =
+            svg.split(" id=\"").skip(1).map(|rest| rest.split_once('"').unwrap().0).collect();
+        let all = ids.len();
+        ids.sort_unstable();
+        ids.dedup();
+        assert!(all >= 2 && ids.len() == all, "{ids:?}");
+        // the title, in at most three lines above the figure, and inside
+        let (head, drawn) = svg.split_once("</desc>").unwrap().1.split_once("<svg ").unwrap();
+        let lines = head.split("</text>").filter_map(|line| line.split_once("<text")?.1.split_once('>'));
+        let lines: Vec<(&str, &str)> = lines.collect();
+        let title = lines.iter().map(|(_, text)| *text).collect::<Vec<_>>().join(" ");
+        assert_eq!(title.replace("&lt;", "<").replace("&gt;", ">"), figure.title());
+        assert!((1..=3).contains(&lines.len()));
+        let number = |tag: &str, name: &str| attribute(tag, name).parse::<f64>().unwrap();
+        for (tag, text) in &lines {
+            let size = number(tag, "font-size");
+            assert!(size >= 24.0 && 0.55 * size * text.chars().count() as f64 <= view[2], "{text}");
+            assert!(number(tag, "y") < number(&format!(" {drawn}"), "y"), "{text}");
+        }
+        // 14 points are 14/72 inch, of the slide's 13.33
+        let (room, own) =
+            (["width", "height"].map(|name| number(&format!(" {drawn}"), name)), numbers(drawn));
+        let scale = (room[0] / own[2]).min(room[1] / own[3]);
+        let sizes = drawn.split(" font-size=\"").skip(1).map(|rest| rest.split_once('"').unwrap().0);
+        let least = sizes.map(|size| size.parse::<f64>().unwrap()).fold(f64::INFINITY, f64::min);
+        assert!(least * scale / view[2] * 960.0 >= 14.0, "{}: {}", slide.name(), least * scale * 0.75);
+    }
+    // what is tall is as large as fits
+    let paths = Paths::new(room, Bounces::Exactly(2), Cosine, FindLight::BySampling).unwrap();
+    let [student, _] = paths::figures::paths_drawn(&paths, 3, 1).unwrap();
+    assert_eq!(student.slide().edition(), Edition::Student);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("slide");
+    let saved = student.slide().save(&folder).unwrap();
+    assert!(saved.iter().all(|path| path.exists() && !path.ends_with("4_1_paths_student_slide.csv")));
 }
 
 #[test]

@@ -247,10 +247,10 @@ pub fn empirical_cdf(exponential: &Exponential, draws: usize, seed: u64) -> Resu
         .note(Ink::Black, [0.4, 0.5], Side::Right, "thin: F(x) = 1 − exp(−λx)")
         .note(Ink::Blue, [0.4, 0.42], Side::Right, &format!("steps: samples, seed {seed}"))
         .note(Ink::Blue, [0.4, 0.34], Side::Right, &told);
-    Plot {
-        name: "1_1_empirical_cdf",
-        title: format!("Exponential samples by inversion: ten step by step, and {draws} against the exact F"),
-        description: format!(
+    let title =
+        format!("Exponential samples by inversion: ten step by step, and {draws} against the exact F");
+    Plot::of("1_1_empirical_cdf", 66.0, vec![carried, panel])
+        .titled(title, format!(
             "Two panels against x, λ = {lambda}. Left: ten evenly spaced U are carried across to the curve \
              of F and down \
              to their samples, which lie closest where F is steepest, near 0. Right: the share of {draws} \
@@ -259,14 +259,8 @@ pub fn empirical_cdf(exponential: &Exponential, draws: usize, seed: u64) -> Resu
              runs \
              inside the band (seed {seed}).",
             typeset(reach, 2)
-        ),
-        edition: Edition::Solution,
-        width: Width::Page,
-        height_mm: 66.0,
-        columns: 2,
-        panels: vec![carried, panel],
-    }
-    .draw()
+        ))
+        .draw()
 }
 
 /// 1.1: log survival, down to the last sample that f32's and f64's uniform numbers can give.
@@ -304,19 +298,11 @@ pub fn tails(exponential: &Exponential, draws: usize, seed: u64) -> Result<Figur
         .text(Ink::Blue, [end64, 4e-5], Side::Left, "53 ln 2 = 36.737")
         .text(Ink::Green, [1.0, 1e-9], Side::Right, &format!("rings: {draws}"))
         .text(Ink::Green, [1.0, 4e-11], Side::Right, "samples");
-    Plot {
-        name: "1_1_tails",
-        title: "The tail of inversion ends where the grid of uniform numbers ends".into(),
-        description: format!(
+    Plot::of("1_1_tails", 62.0, vec![panel])
+        .titled("The tail of inversion ends where the grid of uniform numbers ends", format!(
             "P(X > x) against λx on a logarithmic scale: the straight line e^(−λx), {draws} f64 samples on \
              it (seed {seed}), and the last \
              samples possible: λx = 16.636 with f32 uniform numbers, 36.737 with f64."
-        ),
-        edition: Edition::Solution,
-        width: Width::Column,
-        height_mm: 62.0,
-        columns: 1,
-        panels: vec![panel],
-    }
-    .draw()
+        ))
+        .draw()
 }

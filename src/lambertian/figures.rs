@@ -10,7 +10,7 @@ use crate::estimator::from_fn;
 use crate::lambertian::hemisphere::Hemisphere::{self, Cosine, Uniform};
 use crate::lambertian::{CosinePower, Lambertian, Light, RingLight};
 use crate::numbers::power_of_ten;
-use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side, Width};
+use crate::plot::{Axis, Figure, Ink, Marker, Panel, Plot, Side};
 use crate::run::{Budget, estimate};
 use crate::stream::Stream;
 
@@ -36,20 +36,14 @@ pub fn integrand() -> Result<Figure> {
         .text(Ink::Vermilion, [0.03, 0.67], Side::Right, "(sin θ forgotten)")
         .text(Ink::Green, [1.54, 0.76], Side::Left, "sin θ: area 1")
         .text(Ink::Green, [1.54, 0.67], Side::Left, "(cos θ forgotten)");
-    Plot {
-        name: "3_2_integrand",
-        title: "cos θ sin θ has area ½; with a factor forgotten the area is 1".into(),
-        description: "Three curves over θ from 0 to π/2: cos θ sin θ, filled, with area ½; cos θ, which is \
+    Plot::of("3_2_integrand", 62.0, vec![panel])
+        .titled(
+            "cos θ sin θ has area ½; with a factor forgotten the area is 1",
+            "Three curves over θ from 0 to π/2: cos θ sin θ, filled, with area ½; cos θ, which is \
                       left when sin θ of the solid \
-                      angle is forgotten, and sin θ, which is left when cos θ is, each with area 1."
-            .into(),
-        edition: Edition::Solution,
-        width: Width::Column,
-        height_mm: 62.0,
-        columns: 1,
-        panels: vec![panel],
-    }
-    .draw()
+                      angle is forgotten, and sin θ, which is left when cos θ is, each with area 1.",
+        )
+        .draw()
 }
 
 /// 3.4 and 3.5: sampled directions from above and from the side.
@@ -88,10 +82,8 @@ pub fn directions(hemisphere: Hemisphere, count: usize, seed: u64) -> Result<Fig
     side.arrow(Ink::Black, [0.0, 1.0], [0.0, 1.4]);
     side.text(Ink::Black, [0.03, 1.3], Side::Right, "normal");
     side.text(Ink::Black, [0.0, -0.25], Side::Centre, &format!("{rule}, φ = 2πV"));
-    Plot {
-        name,
-        title: format!("{count} {word} directions, from above and from the side"),
-        description: format!(
+    Plot::of(name, 62.2, vec![top, side])
+        .titled(format!("{count} {word} directions, from above and from the side"), format!(
             "{count} points on the unit hemisphere drawn with {rule} and φ = 2πV (seed {seed}), seen from \
              above, inside the circle of the horizon, \
              and from the side, above the surface. {}",
@@ -101,14 +93,8 @@ pub fn directions(hemisphere: Hemisphere, count: usize, seed: u64) -> Result<Fig
                             rim.",
                 Cosine => "From above they fill the disc evenly; few are near the horizon.",
             }
-        ),
-        edition: Edition::Solution,
-        width: Width::Page,
-        height_mm: 62.2,
-        columns: 2,
-        panels: vec![top, side],
-    }
-    .draw()
+        ))
+        .draw()
 }
 
 /// f/p of a white surface under a uniform light of radiance 1, against θ: what varies from draw to draw.
@@ -179,23 +165,18 @@ pub fn variance_against_exponent(draws: u64, seed: u64) -> Result<Figure> {
         .text(Ink::Blue, [2.3, 0.4], Side::Centre, "uniform")
         .text(Ink::Vermilion, [2.5, 0.045], Side::Centre, "cosine")
         .text(Ink::Vermilion, [-0.6, 0.56], Side::Right, "cosine: ∞ as a → −1");
-    Plot {
-        name: "3_6_variance",
-        title: "Cosine-weighted directions win for a > −½, uniform ones below".into(),
-        description: format!(
-            "Left: f/p against θ under a uniform light; 2 cos θ for uniform directions, 1 everywhere for \
+    Plot::of("3_6_variance", 66.0, vec![reason(), panel])
+        .titled(
+            "Cosine-weighted directions win for a > −½, uniform ones below",
+            format!(
+                "Left: f/p against θ under a uniform light; 2 cos θ for uniform directions, 1 everywhere for \
              cosine-weighted ones, whose p is proportional to f. Right: variance of one draw against the \
              exponent a of the light cos^a θ. Uniform: 0 at a = −1, 1/3 at a = 0. Cosine: infinite as a → \
              −1, 0 at a = 0. Both are 2/9 at \
              a = −½. Points: variances of {draws} draws, seed {seed}."
-        ),
-        edition: Edition::Solution,
-        width: Width::Page,
-        height_mm: 66.0,
-        columns: 2,
-        panels: vec![reason(), panel],
-    }
-    .draw()
+            ),
+        )
+        .draw()
 }
 
 /// 3.6: cosine's variance over the uniform one against the width of a ring of light along the horizon.
@@ -230,23 +211,15 @@ pub fn variance_against_ring(draws: u64, seed: u64) -> Result<Figure> {
         .marks("crossing", Ink::Black, Marker::Ring, [[0.75, 1.0], [0.1, 297.0 / 37.0]])
         .text(Ink::Black, [0.12, 9.0], Side::Right, "8.03 at ε = 0.1")
         .text(Ink::Black, [0.79, 2.6], Side::Centre, "equal at ε = ¾")
-        .text(Ink::Grey, [0.02, 0.72], Side::Right, "above: uniform is better")
-        .text(Ink::Grey, [0.02, 0.4], Side::Right, "below: cosine is better");
-    Plot {
-        name: "3_6_ring",
-        title: "Light from near the horizon: cosine-weighted directions lose for ε < ¾".into(),
-        description: format!(
+        .text(Ink::Grey, [0.02, 0.66], Side::Right, "above: uniform is better")
+        .text(Ink::Grey, [0.02, 0.37], Side::Right, "below: cosine is better");
+    Plot::of("3_6_ring", 66.0, vec![panel])
+        .titled("Light from near the horizon: cosine-weighted directions lose for ε < ¾", format!(
             "The ratio of cosine's variance to the uniform one against the width ε of the ring of light cos \
              θ < ε, falling from 8.03 at ε = 0.1 to 1 at \
              ε = ¾ and below. Points: variances of {draws} draws, seed {seed}."
-        ),
-        edition: Edition::Solution,
-        width: Width::Column,
-        height_mm: 66.0,
-        columns: 1,
-        panels: vec![panel],
-    }
-    .draw()
+        ))
+        .draw()
 }
 
 /// The relative difference taken for none: half of the smaller bias shown.
@@ -317,14 +290,12 @@ pub fn betting(seed: u64) -> Result<Figure> {
         .text(Ink::Blue, [220.0, 4.2], Side::Right, "solid: against 0.5 % less")
         .text(Ink::Purple, [220.0, 2.9], Side::Right, "dotted: against 0.5 % more");
 
-    Plot {
-        name: "check_wealth",
-        title: format!(
+    Plot::of("check_wealth", 76.0, vec![against, certificate])
+        .titled(format!(
             "Betting against a mean: the classic mistake is refuted after {classic_draws} draws, a bias of 1 \
              % after {off_draws}, and the right \
              estimator certified within 0.5 % after {right_draws}"
-        ),
-        description: format!(
+        ), format!(
             "Two panels, wealth against draws, both logarithmic, seed {seed}. Left, bets against the mean \
              2/3: those on uniform directions \
              with the cosine weight reach 10¹² after {classic_draws} draws, those on an estimator 1 % too \
@@ -332,14 +303,8 @@ pub fn betting(seed: u64) -> Result<Figure> {
              a right one never. Right, for the right estimator: bets against means 0.5 % less and 0.5 % more \
              both pass \
              10⁶ by {right_draws} draws."
-        ),
-        edition: Edition::Solution,
-        width: Width::Page,
-        height_mm: 76.0,
-        columns: 2,
-        panels: vec![against, certificate],
-    }
-    .draw()
+        ))
+        .draw()
 }
 
 /// Looks at least 2 % apart, and the last.

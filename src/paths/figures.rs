@@ -11,7 +11,7 @@ use crate::lambertian::hemisphere::Hemisphere::{Cosine, Uniform};
 use crate::numbers::typeset;
 use crate::paths::room::{BoxRoom, Vertex, exact};
 use crate::paths::{Bounces, FindLight, Paths, reflected};
-use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side, Width};
+use crate::plot::{Axis, Figure, Ink, Marker, Panel, Plot, Side};
 use crate::run::{Budget, Run, estimate};
 use crate::stream::Stream;
 
@@ -69,22 +69,14 @@ pub fn two_bounces_converging(room: &BoxRoom, seed: u64) -> Result<Figure> {
         .text(Ink::Green, [9e4, 1.85 * height], Side::Left, "dash-dot: light by chance")
         .text(Ink::Vermilion, [9e4, 1.69 * height], Side::Left, "dashed: light sampled")
         .text(Ink::Blue, [9e4, 1.53 * height], Side::Left, "solid: Lₒ(pⱼ) known");
-    Plot {
-        name: "4_3_convergence",
-        title: "Three estimators of the light after two bounces, and the value they converge to".into(),
-        description: format!(
+    Plot::of("4_3_convergence", 66.0, vec![panel])
+        .titled("Three estimators of the light after two bounces, and the value they converge to", format!(
             "Running means against the number of paths n from 10 to {LAST}, logarithmic (seed {seed}). With \
              the exact Lₒ(pⱼ) and cosine directions the mean settles first; with the light sampled at pⱼ and \
              uniform directions, in its \
              95 % band, next; where the light is found by chance most paths find nothing, and the mean jumps."
-        ),
-        edition: Edition::Solution,
-        width: Width::Column,
-        height_mm: 66.0,
-        columns: 1,
-        panels: vec![panel],
-    }
-    .draw()
+        ))
+        .draw()
 }
 
 /// The means of the first n draws, at 25 n a decade from 10 on.
@@ -144,22 +136,14 @@ pub fn occluded_fraction(draws: u64, seed: u64) -> Result<Figure> {
         .text(Ink::Blue, [0.02, 0.22], Side::Right, "divided by all n: right")
         .text(Ink::Vermilion, [0.02, 1.2], Side::Right, "divided by the visible")
         .text(Ink::Vermilion, [0.02, 1.04], Side::Right, "ones alone: too bright");
-    Plot {
-        name: "4_3_occlusion",
-        title: "An occluded direction counts: it adds 0 to the sum and 1 to n".into(),
-        description: format!(
+    Plot::of("4_3_occlusion", 62.0, vec![panel])
+        .titled("An occluded direction counts: it adds 0 to the sum and 1 to n", format!(
             "L̂/ρ with uniform directions against the fraction c that is occluded, from 0 to 0.8; the light \
              itself stays. The sum divided by all n is flat at {truth:.2}; divided by the number of visible \
              directions it rises as {truth:.2}/(1 − c), to five times that. \
              Points: {draws} directions each (seed {seed})."
-        ),
-        edition: Edition::Solution,
-        width: Width::Column,
-        height_mm: 62.0,
-        columns: 1,
-        panels: vec![panel],
-    }
-    .draw()
+        ))
+        .draw()
 }
 
 /// A way to find the light whose variance is finite: by chance where the light touches the walls, and its
@@ -233,27 +217,17 @@ pub fn radiance_by_bounces(room: &BoxRoom, seed: u64) -> Result<Figure> {
     panel.text(Ink::Blue, [8.4, top], Side::Left, &format!("k = {known}: exact"));
     panel.text(Ink::Vermilion, [8.4, top / (high / low).powf(0.09)], Side::Left, "others: estimated");
     let less = all.iter().zip(all.iter().skip(1)).all(|([.., low, _], [.., next])| next < low);
-    Plot {
-        name: "4_3_bounces",
-        title: if less {
+    Plot::of("4_3_bounces", 66.0, vec![panel])
+        .titled(if less {
             "Each bounce adds less"
         } else {
-            "The light after one bounce, after two, and so \
-                                                           on"
-        }
-        .into(),
-        description: format!(
+            "The light after one bounce, after two, and so on"
+        }, format!(
             "Bars, on a logarithmic scale: the light that leaves p after k = 1 to 8 bounces. For k = {known} \
              it is exact; the others are means of {PATHS} paths each with 95 % intervals, most too short to \
              be seen (seed {seed})."
-        ),
-        edition: Edition::Solution,
-        width: Width::Column,
-        height_mm: 66.0,
-        columns: 1,
-        panels: vec![panel],
-    }
-    .draw()
+        ))
+        .draw()
 }
 
 /// One estimator, with what a path costs, and how far the means of n paths are from the reference.
@@ -432,41 +406,17 @@ fn error_figure(
         let y = Axis::log("RMSE/truth", bottom, top);
         let y = if shift < 10.0 { y.with_ticks(ticks) } else { y };
         let mut panel = Panel::new(heading, Axis::log(unit, low, high), y);
-        let up = (top / bottom).powf(0.04);
-        let (mut falling, mut level) = (Vec::new(), Vec::new());
         for series in all {
             let Series { label, ink, marker, .. } = *series;
             let work = cost(series);
             panel.marks(label, ink, marker, series.measured.iter().map(|[n, rmse]| [n * work, *rmse]));
-            if series.found_none() {
-                level.push((ink, label, 1.0));
-                continue;
+            if !series.found_none() {
+                panel.curve(label, ink, |c| if c >= work { series.rmse(c / work) } else { f64::NAN });
             }
-            panel.curve(label, ink, |c| if c >= work { series.rmse(c / work) } else { f64::NAN });
-            if series.bias == 0.0 {
-                falling.push((ink, label, series.spread * work.sqrt()));
-            } else {
-                level.push((ink, label, series.bias.abs()));
-            }
-        }
-        // of two lines close to each other the upper one has its label on the right, where the lines fall
-        // away from it
-        falling.sort_by(|a, b| b.2.total_cmp(&a.2));
-        for (rank, (ink, label, once)) in falling.into_iter().enumerate() {
-            let past_the_points = low * (high / low).powf(if rank < 2 { 0.55 } else { 0.6 });
-            let side = if rank % 2 == 0 { Side::Right } else { Side::Left };
-            panel.text(ink, [past_the_points, (once / past_the_points.sqrt()).max(bottom * up)], side, label);
-        }
-        level.sort_by(|a, b| b.2.total_cmp(&a.2));
-        let mut above = f64::INFINITY;
-        for (ink, label, at) in level {
-            let beside = if at * up.powf(1.6) < above { at * up } else { at / up };
-            panel.text(ink, [high, beside], Side::Left, label);
-            above = at;
+            panel.named(&format!("{} {label}", marker.sign()));
         }
         panels.push(panel);
     }
-    let one = panels.len() < 2;
     let all_light = if endings.is_empty() {
         "All light is left out: an albedo is too large for absorption to end a path."
     } else {
@@ -474,21 +424,13 @@ fn error_figure(
          roulette fall on."
     };
     let left_out = ways.len() < 4 || (1..4).contains(&endings.len());
-    Plot {
-        name,
-        title: format!("What the ways of sampling cost: error against {unit}"),
-        description: format!(
+    Plot::of(name, 78.0, panels)
+        .titled(format!("What the ways of sampling cost: error against {unit}"), format!(
             "Root mean square error relative to the truth against {unit}, both logarithmic. Light after at \
              most two bounces, by four ways of sampling: the lower a line, the fewer {unit} an error takes. \
              {all_light} \
              Lines: from a path's variance, bias and cost; points: 100 runs each (seed {seed}).{}",
             if left_out { " Ways whose variance may be infinite are left out." } else { "" }
-        ),
-        edition: Edition::Solution,
-        width: if one { Width::Column } else { Width::Page },
-        height_mm: 78.0,
-        columns: panels.len().max(1),
-        panels,
-    }
-    .draw()
+        ))
+        .draw()
 }

@@ -8,6 +8,7 @@
 mod labels;
 mod panel;
 mod render;
+mod slide;
 
 pub(crate) use labels::Labels;
 pub(crate) use panel::{Axis, Ink, Marker, Panel, Plot, Side, Width};
@@ -70,14 +71,20 @@ impl Figure {
         &self.csv
     }
 
+    /// The same on a slide of 16 to 9, below its title in large type: `name_slide`. It has no CSV.
+    pub fn slide(&self) -> Self {
+        let name = format!("{}_slide", self.name);
+        Self { svg: slide::svg(self, &name), csv: String::new(), name, ..self.clone() }
+    }
+
     /// Writes `name.svg` and `name.csv` into `folder`, which is made if need be (with the features `png` and
     /// `pdf` those formats, too). Each file appears whole or not at all. Returns the paths, the SVG's first.
     ///
     /// # Errors
     /// If the folder or a file cannot be written.
     pub fn save(&self, folder: &Path) -> Result<Vec<PathBuf>> {
-        #[cfg_attr(not(any(feature = "png", feature = "pdf")), expect(unused_mut))]
         let mut files = vec![("svg", self.svg.clone().into_bytes()), ("csv", self.csv.clone().into_bytes())];
+        files.retain(|(_, bytes)| !bytes.is_empty());
         #[cfg(feature = "png")]
         files.push(("png", self.png(300.0)?));
         #[cfg(feature = "pdf")]

@@ -56,6 +56,19 @@ pub(crate) enum Marker {
     Cross,
 }
 
+impl Marker {
+    /// A sign like it, to be written before what is said of its points.
+    pub fn sign(self) -> &'static str {
+        match self {
+            Self::Dot | Self::Disc => "●",
+            Self::Ring => "○",
+            Self::Square => "■",
+            Self::Triangle => "▲",
+            Self::Cross => "×",
+        }
+    }
+}
+
 /// On which side of its point a text stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Side {
@@ -123,6 +136,12 @@ pub(crate) enum Item {
         ink: Ink,
         at: [f64; 2],
         side: Side,
+        text: String,
+    },
+    /// a text of one line or more beside one of these points, wherever there is room
+    Label {
+        ink: Ink,
+        beside: Vec<[f64; 2]>,
         text: String,
     },
 }
@@ -366,6 +385,45 @@ impl Panel {
         self.add(Item::Text { ink, at, side, text: text.into() })
     }
 
+    /// A text beside `at`, where there is room.
+    pub fn label(&mut self, ink: Ink, at: [f64; 2], text: &str) -> &mut Self {
+        self.add(Item::Label { ink, beside: vec![at], text: text.into() })
+    }
+
+    /// Names the line or the marks added last, where there is room beside them.
+    pub fn named(&mut self, text: &str) -> &mut Self {
+        let (ink, beside) = match self.items.last() {
+            Some(Item::Line { ink, points, .. }) => (*ink, self.along(points)),
+            Some(Item::Marks { ink, points, .. }) => (*ink, points.clone()),
+            _ => return self,
+        };
+        self.add(Item::Label { ink, beside, text: text.into() })
+    }
+
+    /// Points of a line, fiftieths of the axes apart.
+    fn along(&self, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let placed: Vec<_> = points.iter().map(|&[x, y]| [self.x.place(x), self.y.place(y)]).collect();
+        let mut along = Vec::new();
+        for pair in placed.windows(2) {
+            let &[from, to] = pair else { continue };
+            let step = [to[0] - from[0], to[1] - from[1]];
+            let count = (50.0 * step[0].abs().max(step[1].abs())).ceil().clamp(1.0, 1000.0);
+            let parts = (0..count as u32).map(|part| f64::from(part) / count);
+            along.extend(parts.map(|part| self.spot(from[0] + part * step[0], from[1] + part * step[1])));
+        }
+        // one a fiftieth will do
+        let mut last = [f64::INFINITY; 2];
+        along.retain(|&[x, y]| {
+            let at = [self.x.place(x), self.y.place(y)];
+            let far = (at[0] - last[0]).abs().max((at[1] - last[1]).abs()) >= 0.02;
+            if far {
+                last = at;
+            }
+            far
+        });
+        along
+    }
+
     /// A text beside the point at these parts of the axes, whatever their numbers.
     pub fn note(&mut self, ink: Ink, [across, up]: [f64; 2], side: Side, text: &str) -> &mut Self {
         let at = self.spot(across, up);
@@ -406,6 +464,19 @@ pub(crate) struct Plot {
 }
 
 impl Plot {
+    /// The solution's figure of these panels: a column wide if it is one, else in a row across the page.
+    pub fn of(name: &'static str, height_mm: f64, panels: Vec<Panel>) -> Self {
+        let width = if panels.len() > 1 { Width::Page } else { Width::Column };
+        let (title, description) = (String::new(), String::new());
+        let (edition, columns) = (Edition::Solution, panels.len());
+        Self { name, title, description, edition, width, height_mm, columns, panels }
+    }
+
+    /// The same, with its title and what a reader who cannot see it should know.
+    pub fn titled(self, title: impl Into<String>, description: impl Into<String>) -> Self {
+        Self { title: title.into(), description: description.into(), ..self }
+    }
+
     /// Draws it.
     pub fn draw(&self) -> Result<Figure> {
         let suffix = match self.edition {
@@ -449,9 +520,11 @@ impl Plot {
                     Item::ErrorBars { series, points, .. } => {
                         (series, points.iter().map(|point| point.map(Some)).collect())
                     }
-                    Item::Key { .. } | Item::Shade { .. } | Item::Arrow { .. } | Item::Text { .. } => {
-                        continue;
-                    }
+                    Item::Key { .. }
+                    | Item::Shade { .. }
+                    | Item::Arrow { .. }
+                    | Item::Text { .. }
+                    | Item::Label { .. } => continue,
                 };
                 for row in rows.into_iter().filter(|row| !row.iter().flatten().any(|cell| cell.is_nan())) {
                     // writing to a String cannot fail

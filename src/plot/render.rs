@@ -8,7 +8,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontFamily, register_font};
 
-use super::labels::width;
+use super::labels::{LINE, Labels, size, width};
 use super::panel::{Ink, Item, Marker, Panel, Plot, Side};
 use crate::error::{Error, Result};
 
@@ -164,6 +164,83 @@ fn draw_panel(panel: &Panel, area: &Area<'_>) -> Drawn {
     for item in &panel.items {
         draw_item(item, &frame, area)?;
     }
+    draw_labels(&frame, area)
+}
+
+/// The labels, where they are least in the way of all else.
+fn draw_labels(frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
+    let real = |(x, y): (i32, i32)| [f64::from(x), f64::from(y)];
+    let at = |point: &[f64; 2]| real(frame.at(*point));
+    let mut labels = Labels::new([frame.left, frame.top], [frame.right, frame.bottom], 1.0 / PT);
+    let marker = [6.0; 2];
+    for item in &frame.panel.items {
+        match item {
+            Item::Line { points, .. } => {
+                for run in frame.clip(points) {
+                    labels.avoid(&run.into_iter().map(real).collect::<Vec<_>>());
+                }
+            }
+            Item::Marks { points, .. } => {
+                points
+                    .iter()
+                    .filter(|point| frame.holds(**point))
+                    .for_each(|p| labels.keep_off(at(p), marker));
+            }
+            Item::ErrorBars { points, .. } => {
+                for &[x, y, low, high] in points.iter().filter(|[x, y, ..]| frame.holds([*x, *y])) {
+                    labels.keep_off(at(&[x, y]), marker);
+                    labels.avoid(&[at(&[x, low]), at(&[x, high])]);
+                }
+            }
+            Item::Key { at: key, .. } => labels.keep_off(at(key), marker),
+            Item::Arrow { from, to, .. } => labels.avoid(&[at(from), at(to)]),
+            Item::Text { at, side, text, .. } if frame.is_near(*at) => {
+                let (start, horizontal, vertical) = stands(frame.at(*at), *side);
+                let ([x, y], [across, up]) = (real(start), size(text));
+                let x = x + match horizontal {
+                    HPos::Left => 0.5,
+                    HPos::Center => 0.0,
+                    HPos::Right => -0.5,
+                } * across
+                    * PT;
+                let y = y + match vertical {
+                    VPos::Top => 0.5,
+                    VPos::Center => 0.0,
+                    VPos::Bottom => -0.5,
+                } * up
+                    * PT;
+                labels.keep_off([x, y], [across, up]);
+            }
+            Item::Shade { from, to } => {
+                let ends = [frame.panel.y.low, frame.panel.y.high];
+                [from, to].into_iter().for_each(|x| labels.avoid(&ends.map(|y| at(&[*x, y]))));
+            }
+            // what fills an area may lie under a label
+            Item::Band { .. } | Item::Bars { .. } => {}
+            Item::Text { .. } | Item::Label { .. } => {}
+        }
+    }
+    let mut all: Vec<_> = frame
+        .panel
+        .items
+        .iter()
+        .filter_map(|item| match item {
+            Item::Label { ink, beside, text } => Some((ink, beside, text)),
+            _ => None,
+        })
+        .collect();
+    // those with the fewest places to choose from first
+    all.sort_by_key(|(_, beside, _)| beside.len());
+    for (ink, beside, text) in all {
+        let points: Vec<_> = beside.iter().filter(|point| frame.holds(**point)).map(at).collect();
+        let Some([x, y]) = labels.beside(&points, text) else { continue };
+        let last = 0.5 * (text.lines().count() as f64 - 1.0);
+        for (row, line) in text.lines().enumerate() {
+            let middle = (x.round() as i32, (y + (row as f64 - last) * LINE * PT).round() as i32);
+            let style = font(8.0, &dark(*ink), HPos::Center, VPos::Center);
+            area.draw(&Text::new(line.to_owned(), middle, style))?;
+        }
+    }
     Ok(())
 }
 
@@ -253,22 +330,30 @@ fn draw_item(item: &Item, frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
             draw_arrow(frame.at(*from), frame.at(*to), *ink, area)?;
         }
         Item::Text { ink, at, side, text } if frame.is_near(*at) => {
-            let gap = (4.0 * PT) as i32;
-            let (x, y) = frame.at(*at);
-            let (at, horizontal, vertical) = match side {
-                Side::Left => ((x - gap, y), HPos::Right, VPos::Center),
-                Side::Right => ((x + gap, y), HPos::Left, VPos::Center),
-                Side::Above => ((x, y - gap), HPos::Center, VPos::Bottom),
-                Side::UpperRight => ((x + gap, y - gap / 2), HPos::Left, VPos::Bottom),
-                Side::LowerRight => ((x + gap, y + gap / 2), HPos::Left, VPos::Top),
-                Side::Centre => ((x, y), HPos::Center, VPos::Center),
-            };
+            let (at, horizontal, vertical) = stands(frame.at(*at), *side);
             area.draw(&Text::new(text.clone(), at, font(8.0, &dark(*ink), horizontal, vertical)))?;
         }
-        // a shade lies under the axes; and what belongs far outside of them is not drawn
-        Item::Shade { .. } | Item::Key { .. } | Item::Arrow { .. } | Item::Text { .. } => {}
+        // a shade lies under the axes, labels above all else; and what belongs far outside is not drawn
+        Item::Shade { .. }
+        | Item::Label { .. }
+        | Item::Key { .. }
+        | Item::Arrow { .. }
+        | Item::Text { .. } => {}
     }
     Ok(())
+}
+
+/// Where a text on this side of a point begins, ends or has its middle.
+fn stands((x, y): (i32, i32), side: Side) -> ((i32, i32), HPos, VPos) {
+    let gap = (4.0 * PT) as i32;
+    match side {
+        Side::Left => ((x - gap, y), HPos::Right, VPos::Center),
+        Side::Right => ((x + gap, y), HPos::Left, VPos::Center),
+        Side::Above => ((x, y - gap), HPos::Center, VPos::Bottom),
+        Side::UpperRight => ((x + gap, y - gap / 2), HPos::Left, VPos::Bottom),
+        Side::LowerRight => ((x + gap, y + gap / 2), HPos::Left, VPos::Top),
+        Side::Centre => ((x, y), HPos::Center, VPos::Center),
+    }
 }
 
 fn draw_marker((x, y): (i32, i32), ink: Ink, marker: Marker, area: &Area<'_>) -> Drawn {
@@ -353,12 +438,11 @@ fn bold(points: f64, colour: &RGBColor) -> TextStyle<'static> {
         .pos(Pos::new(HPos::Left, VPos::Top))
 }
 
-/// Gives the document its size in mm, title and description, dashes, and text a white edge that keeps lines
-/// off it.
+/// Gives the drawing dashes, and text a white edge that keeps lines off it, in a document of its own.
 fn finish(plot: &Plot, name: &str, svg: &str) -> String {
-    let (width, height) = (plot.width.millimetres(), plot.height_mm);
+    let size = [plot.width.millimetres(), plot.height_mm];
     let body = svg.split_once('>').map_or("", |(_, body)| body);
-    let view = format!("0 0 {} {}", (width * MM) as u32, (height * MM) as u32);
+    let body = body.strip_suffix("</svg>\n").unwrap_or(body);
     let mut body = body
         .replace(" opacity=\"1\"", "")
         .replace(" \"/>", "\"/>")
@@ -367,14 +451,36 @@ fn finish(plot: &Plot, name: &str, svg: &str) -> String {
     for (opacity, pattern) in DASHES {
         body = body.replace(&format!("opacity=\"{opacity}\""), &format!("stroke-dasharray=\"{pattern}\""));
     }
+    let lattice = size.map(|size| (size * MM).trunc());
+    document(name, size, lattice, [&plot.title, &plot.description], &body)
+}
+
+/// A picture of this size in mm on white, `[width, height]` of its own units, with title and description.
+pub(super) fn document(
+    name: &str,
+    [width, height]: [f64; 2],
+    [across, down]: [f64; 2],
+    [title, description]: [&str; 2],
+    body: &str,
+) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" \
-         viewBox=\"{view}\" \
+         viewBox=\"0 0 {across} {down}\" \
          stroke-linejoin=\"round\" role=\"img\" aria-labelledby=\"{name}-title {name}-desc\">\n\
          <title id=\"{name}-title\">{}</title>\n<desc id=\"{name}-desc\">{}</desc>\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>{body}",
-        escape(&plot.title),
-        escape(&plot.description),
+         <rect width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>{body}</svg>\n",
+        escape(title),
+        escape(description),
+    )
+}
+
+/// A line of a title about x, on the line at y, in type of `size`.
+pub(super) fn title_line(x: f64, y: f64, size: u8, text: &str) -> String {
+    let RGBColor(r, g, b) = INK;
+    format!(
+        "\n<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\" {FONTS} font-size=\"{size}\" \
+         fill=\"#{r:02X}{g:02X}{b:02X}\">{}</text>",
+        escape(text)
     )
 }
 

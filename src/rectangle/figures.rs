@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::estimator::{Estimator, from_fn};
 use crate::numbers::typeset;
-use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side, Width};
+use crate::plot::{Axis, Figure, Ink, Marker, Panel, Plot, Side};
 use crate::rectangle::{Integrand, Rectangle};
 use crate::run::{Budget, estimate};
 
@@ -112,12 +112,10 @@ pub fn sampling_errors(rectangle: Rectangle, seed: u64) -> Result<Figure> {
     let right = panel("e^(−x²−y²), points placed four ways", &ways);
     let ([a, b], [c, d]) =
         (rectangle.x_range().map(|end| typeset(end, 12)), rectangle.y_range().map(|end| typeset(end, 12)));
-    Plot {
-        name: "2_1_rmse",
-        title: "Errors against evaluations: four times the pairs halve the error, better placed points do \
-                more"
-            .into(),
-        description: format!(
+    let title =
+        "Errors against evaluations: four times the pairs halve the error, better placed points do more";
+    Plot::of("2_1_rmse", 92.0, vec![left, right])
+        .titled(title, format!(
             "Two panels on logarithmic axes, for [{a}, {b}] × [{c}, {d}]. Left: the root-mean-square error \
              of n \
              independent pairs for each function of the test set, measured over {REPEATS} estimates (marks), \
@@ -128,14 +126,8 @@ pub fn sampling_errors(rectangle: Rectangle, seed: u64) -> Result<Figure> {
              pairs (−1/4 in evaluations), jittered points (−1) and scrambled Sobol points (nearly −3/2). \
              Seed \
              {seed}."
-        ),
-        edition: Edition::Solution,
-        width: Width::Page,
-        height_mm: 92.0,
-        columns: 2,
-        panels: vec![left, right],
-    }
-    .draw()
+        ))
+        .draw()
 }
 
 /// ⟨Fₙ⟩ = A/n Σ f(Xᵢ, Yᵢ) as one draw.
@@ -251,39 +243,26 @@ pub fn running_means(rectangle: Rectangle, seed: u64) -> Result<Figure> {
             means,
         );
         if panels.is_empty() {
+            let truth = format!("thin line: {}", typeset(truth, 6));
             panel
-                .text(
-                    Ink::Black,
-                    [last, truth - 0.62 * reach],
-                    Side::Left,
-                    &format!("thin line: {}", typeset(truth, 6)),
-                )
-                .text(Ink::Blue, [last, truth - 0.75 * reach], Side::Left, "band: 95 % interval")
-                .text(Ink::Blue, [last, truth - 0.88 * reach], Side::Left, "from s/√n so far");
+                .note(Ink::Black, [1.0, 0.24], Side::Left, &truth)
+                .note(Ink::Blue, [1.0, 0.15], Side::Left, "band: 95 % interval")
+                .note(Ink::Blue, [1.0, 0.06], Side::Left, "from s/√n so far");
         }
         panels.push(panel);
     }
     let ([a, b], [c, d]) =
         (rectangle.x_range().map(|end| typeset(end, 12)), rectangle.y_range().map(|end| typeset(end, 12)));
-    Plot {
-        name: "2_1_running_mean",
-        title: "Three runs of the same estimator close in on the truth, as fast as their own error bars \
-                say"
-        .into(),
-        description: format!(
+    let title = "Three runs of the same estimator close in on the truth, as fast as their own error bars say";
+    Plot::of("2_1_running_mean", 62.0, panels)
+        .titled(title, format!(
             "Three panels, one a seed: the mean of n independent draws of area × e^(−X²−Y²) over [{a}, {b}] \
              × [{c}, \
              {d}] against n from 10 to 100 000 on a logarithmic axis, in its 95 % interval, which narrows as \
              1/√n; a thin line at the truth, {}.",
             typeset(truth, 6)
-        ),
-        edition: Edition::Solution,
-        width: Width::Page,
-        height_mm: 62.0,
-        columns: 3,
-        panels,
-    }
-    .draw()
+        ))
+        .draw()
 }
 
 #[cfg(test)]

@@ -181,7 +181,7 @@ fn speed_up(panel: &mut Panel, comparison: &Comparison) {
         (panel.x.high, format!("> × {}", two_digits(shown)))
     };
     panel.arrow(Ink::Black, [from, error], [at, error]);
-    panel.text(Ink::Black, [(at * from).sqrt(), error], Side::Above, &text);
+    panel.label(Ink::Black, [(at * from).sqrt(), error], &text);
 }
 
 /// Efficiency as a part of the best one's, a row a rival, each with its line and marker: what names the

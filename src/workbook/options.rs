@@ -41,6 +41,8 @@ pub struct Options {
     pub(super) both: bool,
     /// Which shard of every run, and of how many. A shard needs no figures.
     pub shard: Option<[u64; 2]>,
+    /// Whether every figure is made as a slide, too.
+    pub slides: bool,
     /// The file of names that each get a worksheet of their own.
     pub(super) variants: Option<PathBuf>,
     /// Nothing is printed but where things are.
@@ -67,6 +69,7 @@ impl Default for Options {
             edition: Edition::Solution,
             both: false,
             shard: None,
+            slides: false,
             variants: None,
             quiet: false,
             title: String::new(),
@@ -141,6 +144,7 @@ impl Request {
                 "hint" => hint = true,
                 "json" => options.json = true,
                 "verbose" => options.verbose = true,
+                "slides" => options.slides = true,
                 "draws" | "error" | "seconds" => read_budget(&mut line, &name, &mut options.budget)?,
                 "seed" => options.seed = whole(&mut line, "--seed")?,
                 "threads" => options.threads = Some(count(&mut line, "--threads")? as usize),

@@ -12,7 +12,7 @@ use super::terminal::{command_lines, folded, labelled, stacked, width};
 use super::{Answer, Appendix, Kind, Options, Question, Stated, shown};
 use crate::error::{Error, Result};
 use crate::numbers::{plus_minus, rounded, shortened, std_errors};
-use crate::plot::Edition;
+use crate::plot::{Edition, Figure};
 use crate::run::Part;
 
 /// Prints the question, before anything is known of its rows.
@@ -66,10 +66,7 @@ pub(super) fn ending(
     }
     let mut rows = Vec::new();
     for answer in answers.iter().filter(|answer| shown(answer, options.edition)) {
-        let mut paths = Vec::new();
-        for figure in answer.figures(options.edition) {
-            paths.extend(figure.save(&options.out)?);
-        }
+        let paths = save(answer.figures(options.edition), options)?;
         // in the student edition one row a question will do, and those with something to mark
         if options.edition == Edition::Solution || rows.is_empty() || !paths.is_empty() {
             rows.push((answer, paths));
@@ -104,6 +101,18 @@ pub(super) fn ending(
         }
     }
     put(&text)
+}
+
+/// Saves figures, as slides, too, if they are asked for.
+fn save<'f>(figures: impl IntoIterator<Item = &'f Figure>, options: &Options) -> Result<Vec<PathBuf>> {
+    let mut paths = Vec::new();
+    for figure in figures {
+        paths.extend(figure.save(&options.out)?);
+        if options.slides {
+            paths.extend(figure.slide().save(&options.out)?);
+        }
+    }
+    Ok(paths)
 }
 
 fn figure_line(path: &Path) -> String {
@@ -151,10 +160,7 @@ fn besides(rows: &[Answer]) -> String {
 
 /// Saves an appendix's figures, and prints it unless it is not `wanted`.
 pub(super) fn appendix(appendix: &Appendix, wanted: bool, options: &Options) -> Result<()> {
-    let mut paths = Vec::new();
-    for figure in &appendix.figures {
-        paths.extend(figure.save(&options.out)?);
-    }
+    let paths = save(&appendix.figures, options)?;
     if !wanted {
         return Ok(());
     }
@@ -381,6 +387,7 @@ pub(super) fn help_beside(beside: &Beside) -> Result<()> {
     }
     text += "    --seed S             seed of all random numbers (1)
     --out DIR            folder for figures (worksheet)
+    --slides             every figure as a slide, too, of 16 to 9 with large type
     --json               one JSON object a line
 ";
     put(&options_folded(&text))
@@ -407,6 +414,7 @@ pub(super) fn help(questions: &[&'static Question]) -> Result<()> {
     text += "\n    --seed S             seed of all random numbers (1)
     --threads T          threads (one a core; for the same draws the results are the same for any number)
     --out DIR            folder for figures and pages (worksheet)
+    --slides             every figure as a slide, too, of 16 to 9 with large type
     --json               one JSON object a line
     --verbose            what every row took: draws, random numbers, evaluations, seconds
     --edition NAME       student, solution or both (solution)

@@ -105,8 +105,8 @@ impl Sheet {
         Row { sheet: self, index: self.last(), draws: DRAWS, most_work: false }
     }
 
-    /// Adds a figure of the answer to the row before it. It is made where it is shown: not in the student's
-    /// edition, and not by a shard.
+    /// Adds a figure of the answer to the row before it. A question's first one is printed, the others are
+    /// seen on a screen. It is made where it is shown: not in the student's edition, and not by a shard.
     ///
     /// # Errors
     /// Those of making it.
