@@ -1,8 +1,8 @@
-//! Where labels go in a drawing: beside their points, off the lines and off each other.
+//! Placing labels in a drawing: beside their points, without covering lines or each other.
 
 use super::panel::{Ink, Panel, Side};
 
-/// A rectangle around a middle, in the drawing's units.
+/// A rectangle given by its centre, in the drawing's units.
 #[derive(Debug, Clone, Copy)]
 struct Box2 {
     middle: [f64; 2],
@@ -10,7 +10,7 @@ struct Box2 {
 }
 
 impl Box2 {
-    /// How much of two rectangles overlaps.
+    /// The area of the overlap of two rectangles.
     fn overlap(&self, other: &Self) -> f64 {
         let along = |axis: usize| {
             let (Some(a), Some(b)) = (self.side(axis), other.side(axis)) else { return 0.0 };
@@ -44,7 +44,7 @@ impl Box2 {
     }
 }
 
-/// About how many points wide a text is: at 8 points a letter is about 5.2 wide, a raised or lowered one
+/// The approximate width of a text in points: at 8 points a letter is about 5.2 wide, a super- or subscript
 /// about 3.4.
 pub(super) fn width(text: &str) -> f64 {
     let of = |c: char| {
@@ -57,9 +57,9 @@ pub(super) fn width(text: &str) -> f64 {
     text.chars().map(of).sum()
 }
 
-/// Labels of one drawing, placed one after the other where they are least in the way.
+/// Labels of one drawing, each placed where it covers the least.
 pub(crate) struct Labels {
-    /// how many points of print a unit is
+    /// points of print per unit
     scale: f64,
     bounds: Box2,
     lines: Vec<[[f64; 2]; 2]>,
@@ -80,7 +80,7 @@ impl Labels {
         self.lines.extend(points.windows(2).filter_map(|pair| <[[f64; 2]; 2]>::try_from(pair).ok()));
     }
 
-    /// Puts a text beside `at`.
+    /// Places a text beside `at`.
     pub fn place(&mut self, panel: &mut Panel, ink: Ink, at: [f64; 2], text: &str) {
         let half = [0.5 * width(text) / self.scale, 4.6 / self.scale];
         let mut best: Option<(f64, f64, Box2)> = None;
@@ -104,8 +104,8 @@ impl Labels {
         }
     }
 
-    /// How much the labels placed so far are in the way: the lines that they cross, and what they cover of
-    /// each other. 0, but for rounding, is a drawing that reads well.
+    /// How bad the placement is so far: the lines that labels cross, and how much they cover of each other.
+    /// 0, up to rounding, if nothing is covered.
     pub fn in_the_way(&self) -> f64 {
         self.in_the_way
     }
