@@ -34,7 +34,7 @@ pub enum Error {
         /// The counts that would have been accepted.
         allowed: &'static str,
     },
-    /// A point of the box room lies where it must not.
+    /// A point is not in the part of the box room where it must be.
     #[error("the point ({}, {}, {}) {reason}", parseable(*.x), parseable(*.y), parseable(*.z))]
     Point {
         /// Its x coordinate in metres.
@@ -73,7 +73,7 @@ pub enum Error {
     Panic {
         /// The probe.
         probe: String,
-        /// The panic's message and place.
+        /// The panic's message and source location.
         reason: String,
     },
     /// A draw lies outside the range claimed for it.

@@ -176,9 +176,9 @@ impl Estimate {
         Some(unscale((mean_square / draws as f64).sqrt(), exponent))
     }
 
-    /// The interval mean ± t·s/√n, which contains the truth with probability `level`; t is Student's with n −
-    /// 1 degrees of freedom. It is exact for normal draws, and a good approximation for others once n is
-    /// large enough for their mean to be near normal.
+    /// The interval mean ± t·s/√n, which contains the truth with probability `level`, for the quantile t of
+    /// Student's distribution with n − 1 degrees of freedom. It is exact for normal draws, and a good
+    /// approximation for others once n is large enough for their mean to be near normal.
     ///
     /// ```
     /// let estimate = unbiased::Estimate::from_draws(&[1.0, 2.0, 3.0, 4.0]);

@@ -1,5 +1,5 @@
-//! The Monte Carlo and global illumination workbook: every question in closed form, by an estimator with its
-//! error bar, and in a picture.
+//! The Monte Carlo and global illumination workbook: every question answered in closed form, by an estimator
+//! with its error bar, and by a figure.
 //!
 //! Everything is an instance of one formula,
 //!
@@ -28,13 +28,14 @@
 //!
 //! # From worksheet to modules
 //!
-//! | section | module | holds |
+//! | section | module | contains |
 //! |---|---|---|
 //! | 1 The inversion method | [`inversion`] | the exponential distribution, and any cdf inverted |
 //! | 2 Unbiased estimators | [`rectangle`] | independent, paired, jittered and Sobol points on a rectangle |
 //! | 3 The diffuse cube | [`lambertian`] | directions, a Lambertian surface, lights with exact variances |
-//! | 4 Paths | [`paths`], [`paths::room`] | the one scene, its closed forms, and paths through it |
-//! | 5 Russian roulette | [`roulette`] | bounce counts, the wrapper X_rr, and what roulette costs and buys |
+//! | 4 Paths | [`paths`], [`paths::room`] | the scene, its closed forms, and paths through it |
+//! | 5 Russian roulette | [`roulette`] | bounce counts, the wrapper X_rr, and the variance and work of
+//! roulette |
 //!
 //! [`check`] tests whether an estimator is unbiased and, if not, names the classic mistakes that it looks
 //! like; try your own in `examples/check_mine.rs`. [`trade`] measures which estimator is the most accurate
@@ -69,14 +70,11 @@
 //! - **draw**: one independent value of an estimator; an estimate is the mean of many draws.
 //! - **estimator**: a function of uniform random numbers whose mean is meant to be the truth; [`Estimator`].
 //! - **evaluation**: one call of the integrand, one ray or one path vertex: the unit of work in a [`Cost`].
-//! - **exercise**: an estimator that the worksheet asks for, with its probes and mistakes;
-//!   [`check::Exercise`].
+//! - **exercise**: an estimator to be written, with its probes and classic mistakes; [`check::Exercise`].
 //! - **mistake**: a classic wrong estimator of an exercise, with the way to correct it; [`check::Mistake`].
-//! - **next-event estimation** ("light sampled"): at each path vertex, sampling a point on the emitter and
-//!   testing whether it is visible, rather than waiting for BSDF sampling to hit the emitter.
+//! - **next-event estimation** ("light sampled"): at each path vertex, sampling a point on the emitter.
 //! - **placement**: replacing independent random numbers by jittered or Sobol points; [`placement`].
-//! - **probe**: one problem of an exercise, with known truth, on which an estimator is tried;
-//!   [`check::Probe`].
+//! - **probe**: a problem with known truth, on which an estimator is tried; [`check::Probe`].
 //! - **radiance** L: light per area perpendicular to its direction and per solid angle, in W m⁻² sr⁻¹.
 //! - **ratio**: a mean divided by the truth: 1 for an unbiased estimator; [`check::Ratio`].
 //! - **replicate**: one randomised point set, taken as a whole; it counts as one draw.

@@ -43,7 +43,7 @@ use crate::fast::all_finite;
 use crate::stream::Stream;
 use crate::stream::points::{Grid, Placement, Sobol};
 
-/// `sobol_burley` has 16 binary digits per coordinate, so the sequence repeats after 2¹⁶ points.
+/// `sobol_burley` uses 16 bits of a point's index, so the sequence repeats after 2¹⁶ points.
 const MOST_POINTS: u64 = 1 << 16;
 
 /// The mean of n draws of `estimator` over the first n points of an Owen-scrambled Sobol sequence: number d

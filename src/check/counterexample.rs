@@ -92,7 +92,7 @@ fn alike_on_each_probe(pairs: &[Vec<[f64; 2]>]) -> bool {
     })
 }
 
-/// Whether the ratio at each point is the same on all probes; a point where the right draw is always 0 passes.
+/// Whether the ratio at each point is the same on all probes; points where the right draw is always 0 pass.
 fn alike_at_each_point(pairs: &[Vec<[f64; 2]>]) -> bool {
     let points = pairs.first().map_or(0, Vec::len);
     (0..points).all(|point| {
