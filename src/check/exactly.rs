@@ -195,11 +195,11 @@ impl Piece {
         self.jump.map_or([self.from, self.to], |(step, _)| around(step))
     }
 
-    /// Whether its error is small beside the whole.
+    /// Whether its error is small compared with the whole.
     fn is_good(&self, scales: [f64; 2]) -> bool {
         let allowed = TOLERANCE * (self.width() / NARROW).min(1.0);
         // A node may be up to a step below its exact place. A jump is not mistaken for that: on more than 16
-        // steps it makes the two rules differ by more than 16 × 0.00597 steps times the jump.
+        // steps it makes the two rules differ by more than 16 × 0.00597 steps times its height.
         let [one, other] = self.ranges.map(|range| 0.095 * STEP * range);
         let [error, of_square] = self.sums.errors;
         self.to - self.from <= FEW
@@ -220,7 +220,7 @@ struct Sweep<'a, E: ?Sized> {
     middle: f64,
     /// What errors are relative to, estimated from the first draws.
     scales: [f64; 2],
-    /// Least and greatest Y since this was last set.
+    /// The smallest and the largest Y since this was last set.
     range: [f64; 2],
     rule: Rule,
     cuts: [Vec<u64>; 3],

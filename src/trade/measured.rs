@@ -88,9 +88,9 @@ pub struct Measured {
     pub truth_error: f64,
     /// The standard error of the variance, from batches, in the truth's unit squared.
     pub variance_error: f64,
-    /// Whether a single one of n draws contributes more to the sum of squares Σ (X − X̄)² than a fraction of
-    /// both ln²(1000 n)/n and 1/√n: then most of the variance comes from a few draws, it may be infinite, and
-    /// its error bar cannot be trusted.
+    /// Whether the fraction of the sum of squares Σ (X − X̄)² that comes from one of the n draws exceeds both
+    /// ln²(1000 n)/n and 1/√n: then the variance depends on a few draws, it may be infinite, and its error
+    /// bar cannot be trusted.
     ///
     /// With tails no heavier than an exponential's, at most one set of draws in a thousand is marked; draws
     /// with a range of less than 11 standard deviations never are. The more draws, the more likely an
