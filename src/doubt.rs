@@ -1,8 +1,8 @@
-//! Why an error bar means nothing, or may mean nothing: one word for it wherever numbers are shown.
+//! Reasons not to trust an error bar, named alike wherever numbers are shown.
 
 use std::fmt;
 
-/// Why an error bar is not to be trusted. It displays as a clause; [`mark`](Self::mark) is a word or two.
+/// Why an error bar cannot be trusted. It displays as a clause; [`mark`](Self::mark) is a short label.
 ///
 /// ```
 /// use unbiased::{Doubt, Estimator, roulette::LightModel};
@@ -16,19 +16,19 @@ use std::fmt;
 pub enum Doubt {
     /// The mean is finite, the variance is not.
     InfiniteVariance,
-    /// A reason that follows from the parameters: the variance may be infinite, or so few draws hold most of
-    /// it that a run may meet none of them.
+    /// A reason that follows from the parameters: the variance may be infinite, or most of it may come from
+    /// draws so rare that a run may contain none of them.
     Reason(String),
-    /// A few of the draws hold most of their variance.
+    /// Most of the variance comes from a few of the draws.
     HeavyTail,
-    /// All draws were the same, and not the truth.
+    /// All draws were the same.
     NeverVaried,
-    /// There are too few draws for a verdict.
+    /// Too few draws for a verdict.
     TooFewDraws,
 }
 
 impl Doubt {
-    /// A word or two, in place of a verdict.
+    /// A short label, shown in place of a verdict.
     pub fn mark(&self) -> &'static str {
         match self {
             Self::InfiniteVariance => "infinite variance",
@@ -45,8 +45,8 @@ impl fmt::Display for Doubt {
         f.write_str(match self {
             Self::InfiniteVariance => "the mean is finite, the variance is not: this error bar means nothing",
             Self::Reason(reason) => reason,
-            Self::HeavyTail => "a few draws hold the variance, which may be infinite",
-            Self::NeverVaried => "all draws were the same: this error bar says nothing else",
+            Self::HeavyTail => "a few draws make up most of the variance, which may be infinite",
+            Self::NeverVaried => "all draws were the same, so this error bar tells nothing",
             Self::TooFewDraws => "there are too few draws to judge",
         })
     }

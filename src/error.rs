@@ -1,4 +1,4 @@
-//! What can go wrong, said in one sentence each.
+//! What can go wrong, with a one-sentence message each.
 
 use crate::numbers::{parseable, rounded};
 
@@ -34,7 +34,7 @@ pub enum Error {
         /// The counts that would have been accepted.
         allowed: &'static str,
     },
-    /// A point of the box room lies where it must not.
+    /// A point is not in the part of the box room where it must be.
     #[error("the point ({}, {}, {}) {reason}", parseable(*.x), parseable(*.y), parseable(*.z))]
     Point {
         /// Its x coordinate in metres.
@@ -46,7 +46,7 @@ pub enum Error {
         /// What is wrong with it.
         reason: &'static str,
     },
-    /// An estimator returned NaN or an infinity, which no mean can hold.
+    /// An estimator returned NaN or an infinity.
     #[error("draw {draw} of block {block} is {value} (seed {seed}): an estimate needs finite draws")]
     Draw {
         /// The run's seed.
@@ -58,25 +58,25 @@ pub enum Error {
         /// The value it had.
         value: f64,
     },
-    /// The same of an estimator that is tried on several problems.
+    /// An estimator that is tried on several probes returned NaN or an infinity.
     #[error("on the probe “{probe}” a draw is {value}: an estimate needs finite draws")]
     OnProbe {
-        /// The problem.
+        /// The probe.
         probe: String,
-        /// Whether it is the first draw of all.
+        /// Whether it is the very first draw.
         first: bool,
         /// The value it had.
         value: f64,
     },
-    /// An estimator that is tried on several problems panics.
+    /// An estimator that is tried on several probes panicked.
     #[error("on the probe “{probe}” the estimator panics: {reason}")]
     Panic {
-        /// The problem.
+        /// The probe.
         probe: String,
-        /// What it says, and where.
+        /// The panic's message and source location.
         reason: String,
     },
-    /// A draw left the range that was claimed for it.
+    /// A draw lies outside the range claimed for it.
     #[error("draw {draw} of block {block} is {} (seed {seed}), outside the range [{}, {}] claimed for \
              it", parseable(*.value), parseable(.range[0]), parseable(.range[1]))]
     OutOfRange {
@@ -91,16 +91,16 @@ pub enum Error {
         /// The range claimed.
         range: [f64; 2],
     },
-    /// Shards do not make a run.
+    /// The shards given are not all the shards of one run.
     #[error("the shards do not make a run: {reason}")]
     Parts {
         /// What is wrong with them.
         reason: String,
     },
-    /// An estimator is no function of a few uniform numbers.
+    /// An estimator cannot be integrated by quadrature over its random numbers.
     #[error("the estimator cannot be integrated: {reason}")]
     NotIntegrable {
-        /// Where it fails.
+        /// Why not.
         reason: String,
     },
     /// Too few draws for the statistic asked for.
@@ -108,29 +108,29 @@ pub enum Error {
     TooFewDraws {
         /// What was asked for.
         statistic: &'static str,
-        /// How many draws it takes.
+        /// How many draws it needs.
         needed: u64,
         /// How many there are.
         draws: u64,
     },
-    /// The error asked for takes more draws than the run allows.
+    /// The std error asked for takes more draws than the run allows.
     #[error("{}, more than the limit of {limit}: ask for a larger error, allow more draws, or give a \
              time", takes(*.std_error, *.needed))]
     Budget {
         /// The standard error asked for.
         std_error: f64,
-        /// The draws that it would take, by the pilot run's variance.
+        /// The draws needed for it, from the pilot run's variance.
         needed: f64,
         /// The run's limit.
         limit: u64,
     },
-    /// A time was to be kept by a clock that cannot.
+    /// A time budget was given, but the clock does not advance.
     #[error("the clock stands still or goes back: give a number of draws instead of a time")]
     Clock,
     /// The function given is not a cumulative distribution function.
     #[error("the function given is not a cdf: {reason}")]
     NotACdf {
-        /// Where it fails, with the values there.
+        /// Where and why it fails, with the values there.
         reason: String,
     },
     /// The worker threads could not be started.
@@ -165,7 +165,7 @@ pub enum Error {
 /// A `Result` with this crate's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// `value` if it is `ok`, else the error that names it.
+/// `value` if `ok`, else an error that names it.
 pub(crate) fn require(name: &'static str, value: f64, ok: bool, allowed: &'static str) -> Result<f64> {
     if ok { Ok(value) } else { Err(Error::Parameter { name, value, allowed }) }
 }

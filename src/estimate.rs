@@ -1,11 +1,11 @@
-//! What a run of draws says: mean, variance, standard error and confidence interval.
+//! The estimate from a run's draws: mean, variance, standard error and confidence interval.
 //!
-//! Moments are kept so that no digit is lost that `f64` draws allow: Σ Xᵢ and Σ (Xᵢ − X̄)² are each held as
-//! an unevaluated sum of two `f64`. Each slice of draws is summed in two passes, the squares about the
-//! slice's own mean, and slices are merged (Chan, Golub & LeVeque 1983): that adds positive terms only, so
-//! nothing cancels, however large the mean is beside the spread. Sums and squares carry exponents of their
-//! own: the mean and the std error are right whenever *they* are representable, even where the sum or the
-//! variance is not.
+//! Moments are accurate to the last digits of `f64`: Σ Xᵢ and Σ (Xᵢ − X̄)² are each a double-double, an
+//! unevaluated sum of two `f64`. Each slice of draws is summed in two passes, the squares about the slice's
+//! own mean, and slices are merged (Chan, Golub & LeVeque 1983): that adds positive terms only, so there is
+//! no cancellation, however large the mean is compared with the standard deviation. Sums and squares have
+//! separate exponents: the mean and the std error are right whenever *they* are representable, even where the
+//! sum or the variance is not.
 
 use std::fmt;
 
@@ -18,23 +18,23 @@ use crate::float::two_sum;
 use crate::numbers::plus_minus;
 use crate::quantile::student_t;
 
-/// Draws summed in one two-pass sweep: they stay in the first-level cache between the passes.
+/// Draws summed at a time: they stay in the first-level cache between the two passes.
 pub(crate) const SLICE: usize = 1024;
 
-/// Sums are kept about one of two exponents, 0 and 600, and squares about one of three, −600, 0 and 600, so
-/// that none over- or underflows.
+/// Sums are scaled by one of two exponents, 0 and 600, and squares by one of three, −600, 0 and 600, so that
+/// none over- or underflows.
 const STEP: i32 = 600;
 const UP: f64 = f64::from_bits((1023 + STEP as u64) << 52);
 const DOWN: f64 = f64::from_bits((1023 - STEP as u64) << 52);
 
-/// Whether a square can be summed as it is. Its bits are in its order, and one comparison is sooner made than
-/// two.
+/// Whether a square can be summed without scaling: DOWN ≤ square < UP, in one comparison of bits, which have
+/// the same order as positive numbers.
 #[inline(always)]
 fn is_plain(square: f64) -> bool {
     square.to_bits().wrapping_sub(DOWN.to_bits()) < UP.to_bits() - DOWN.to_bits()
 }
 
-/// 2⁹⁰⁰: up to 2⁶⁴ draws below it have a sum inside `f64`.
+/// 2⁹⁰⁰: the sum of up to 2⁶⁴ draws below it does not overflow.
 const HUGE: f64 = f64::from_bits((1023 + 900) << 52);
 
 /// The mean of some draws, with its standard error.
@@ -54,13 +54,14 @@ const HUGE: f64 = f64::from_bits((1023 + 900) << 52);
 /// A draw that is NaN or infinite makes the mean NaN or infinite; [`crate::estimate()`] ends with an error
 /// instead.
 ///
-/// As JSON it is its sums to the last bit; an infinity or NaN among them is a string.
+/// Its JSON form holds the sums to the last bit; an infinity or NaN is a string.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 #[serde(from = "Moments", into = "Moments")]
 pub struct Estimate {
     moments: Moments,
-    /// Where draws come one at a time, what their squares are taken about: the mean of at least the first
-    /// half of them. So at most half of the sum of squares is not variance, and a draw needs no division.
+    /// Where draws are pushed one at a time, squares are taken about this value, the mean of at least the
+    /// first half of them. So at most half of the sum of squares is due to its distance from the mean, and a
+    /// push needs no division.
     pivot: Option<f64>,
 }
 
@@ -105,14 +106,14 @@ impl Estimate {
         Self { moments: Moments::NONE, pivot: None }
     }
 
-    /// The estimate that these draws give.
+    /// The estimate from these draws.
     pub fn from_draws(draws: &[f64]) -> Self {
         let mut estimate = Self::new();
         estimate.extend_from_slice(draws);
         estimate
     }
 
-    /// Takes in one draw.
+    /// Adds one draw.
     #[inline]
     pub fn push(&mut self, draw: f64) {
         if let Some(pivot) = self.pivot {
@@ -135,22 +136,22 @@ impl Estimate {
         self.move_pivot();
     }
 
-    /// Takes in many draws, faster than one at a time and equally exact.
+    /// Adds many draws, faster than one at a time and equally accurate.
     pub fn extend_from_slice(&mut self, draws: &[f64]) {
         for slice in draws.chunks(SLICE) {
             *self = self.settled().merged(&Moments::of_slice(slice)).into();
         }
     }
 
-    /// Takes in all that another estimate of the same quantity has seen.
+    /// Adds all draws of another estimate of the same quantity.
     ///
-    /// With δ = mean_b − mean_a: Σ² = Σ²_a + Σ²_b + δ² n_a n_b / n. Beyond 2⁶⁴ draws their number stays at
-    /// the largest `u64`.
+    /// With δ = mean_b − mean_a: Σ² = Σ²_a + Σ²_b + δ² n_a n_b / n. The number of draws saturates at the
+    /// largest `u64`.
     pub fn merge(&mut self, other: &Self) {
         *self = self.settled().merged(&other.settled()).into();
     }
 
-    /// How many draws were taken in.
+    /// The number of draws.
     pub fn draws(&self) -> u64 {
         self.moments.draws
     }
@@ -175,12 +176,9 @@ impl Estimate {
         Some(unscale((mean_square / draws as f64).sqrt(), exponent))
     }
 
-    /// The interval mean ± t·s/√n that covers the truth with probability `level`, t being Student's with
-    /// n − 1 degrees of freedom. It is exact for normal draws, and holds for others once n is large enough
-    /// for their mean to be near normal.
-    ///
-    /// # Errors
-    /// If `level` is not strictly between 0 and 1, or there are fewer than two draws.
+    /// The interval mean ± t·s/√n, which contains the truth with probability `level`, for the quantile t of
+    /// Student's distribution with n − 1 degrees of freedom. It is exact for normal draws, and a good
+    /// approximation for others once n is large enough for their mean to be near normal.
     ///
     /// ```
     /// let estimate = unbiased::Estimate::from_draws(&[1.0, 2.0, 3.0, 4.0]);
@@ -188,6 +186,9 @@ impl Estimate {
     /// assert!(low < 2.5 && 2.5 < high);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If `level` is not strictly between 0 and 1, or there are fewer than two draws.
     pub fn confidence_interval(&self, level: f64) -> Result<[f64; 2]> {
         require("a confidence level", level, level > 0.0 && level < 1.0, "strictly between 0 and 1")?;
         let (Some(std_error), Some(freedom)) = (self.std_error(), self.degrees_of_freedom()) else {
@@ -201,18 +202,18 @@ impl Estimate {
         Ok([self.mean() - reach, self.mean() + reach])
     }
 
-    /// Half the width of the 95 % interval.
+    /// Half the width of the 95 % confidence interval.
     pub(crate) fn reach(&self) -> Option<f64> {
         let [low, high] = self.confidence_interval(0.95).ok()?;
         Some(0.5 * high - 0.5 * low)
     }
 
-    /// How many standard errors the mean lies from `truth`, ±∞ for an infinite one; `None` for fewer than two
-    /// draws, and where there is no distance: a truth that is NaN, or draws that were not finite.
+    /// (mean − truth)/(standard error); ±∞ for an infinite truth; `None` for fewer than two draws, a truth
+    /// that is NaN, or draws that are not finite.
     ///
-    /// A difference of at most 8 units in the last place of `truth` is rounding and counts as none, so that
-    /// an estimator without variance has z = 0 where it is right. A truth of 0 has no last place: an
-    /// estimator of it should return 0 where its value is rounding alone.
+    /// A difference of at most 8 units in the last place of `truth` is rounding and counts as 0, so that an
+    /// estimator without variance has z = 0 if it is right. This does not work for a truth of 0: an estimator
+    /// of it should itself return 0 where its value is only a rounding error.
     pub fn z(&self, truth: f64) -> Option<f64> {
         let std_error = self.std_error()?;
         let off = self.mean() - truth;
@@ -225,7 +226,7 @@ impl Estimate {
         (self.draws() >= 2).then(|| (self.draws() - 1) as f64)
     }
 
-    /// Takes in one draw of any size.
+    /// Adds one draw of any size.
     #[cold]
     #[inline(never)]
     fn join(&mut self, draw: f64) {
@@ -238,7 +239,7 @@ impl Estimate {
         *self = self.settled().about_mean();
     }
 
-    /// With the squares about the mean, wherever they are summed.
+    /// The moments with the squares taken about the mean, not the pivot.
     fn settled(&self) -> Moments {
         let moments = self.moments;
         let Some(pivot) = self.pivot else { return moments };
@@ -248,7 +249,7 @@ impl Estimate {
         if squares.hi > 0.0 {
             Moments { squares, ..moments }
         } else {
-            // without variance there is no scale yet
+            // without variance there is no scale to choose yet
             Moments { squares: Twofold::ZERO, exponent: -STEP, ..moments }
         }
     }
@@ -258,12 +259,12 @@ impl Moments {
     const NONE: Self =
         Self { draws: 0, sum: Twofold::ZERO, sum_exponent: 0, squares: Twofold::ZERO, exponent: -STEP };
 
-    /// The same, ready for one draw after the other where its sums can be kept as they are.
+    /// The estimate with a pivot for further pushes, if its sums need no scaling.
     fn about_mean(self) -> Estimate {
         let n = self.draws as f64;
         let mean = self.sum.over(n);
         let plain = self.sum_exponent == 0 && (self.exponent == 0 || self.squares == Twofold::ZERO);
-        // a count as large as that is left to `merged`, which does not go past the largest
+        // `merged` saturates the count; pushing does not
         if !plain || mean.hi.abs() >= UP || self.draws >= 1 << 63 {
             return self.into();
         }
@@ -272,7 +273,7 @@ impl Moments {
         Estimate { moments, pivot: Some(mean.hi) }
     }
 
-    /// These draws and `other`'s.
+    /// The moments of these draws and `other`'s together.
     fn merged(&self, other: &Self) -> Self {
         if self.draws == 0 || other.draws == 0 {
             return if self.draws == 0 { *other } else { *self };
@@ -294,27 +295,27 @@ impl Moments {
             .join(lower(other.squares, other.exponent, exponent))
             .join(lower(moved, step, exponent));
         let (draws, sum) = (self.draws.checked_add(other.draws), a.join(b));
-        // more draws than can be counted weigh as the most that can
+        // where the count saturates, scale the sums to match
         let share = if draws.is_some() { 1.0 } else { u64::MAX as f64 / (n_a + n_b) };
         let [sum, squares] = if share == 1.0 { [sum, squares] } else { [sum.by(share), squares.by(share)] };
         Self { draws: draws.unwrap_or(u64::MAX), sum, sum_exponent, squares, exponent }
     }
 
-    /// The moments of draws that are all the same.
+    /// The moments of equal draws.
     fn of_equal(draw: f64, draws: u64) -> Self {
         let sum_exponent = if draw.abs() < HUGE { 0 } else { STEP };
         let sum = Twofold { hi: scale(draw, sum_exponent), lo: 0.0 }.by(draws as f64);
         Self { draws, sum, sum_exponent, ..Self::NONE }
     }
 
-    /// The moments of up to [`SLICE`] draws, in two passes: any shift near the mean will do in the second.
+    /// The moments of up to [`SLICE`] draws, in two passes; the second needs the mean only approximately.
     fn of_slice(draws: &[f64]) -> Self {
         let count = draws.len() as u64;
         if draws.iter().all(|draw| *draw == draws[0]) {
             return Self::of_equal(draws[0], count);
         }
         let [sum, squares] = widest(TwoPasses { draws });
-        // 2⁻⁹⁰⁰ and 2⁹⁰⁰: far enough inside f64 that no square in the sum was rounded away or overflowed
+        // between 2⁻⁹⁰⁰ and 2⁹⁰⁰ no square can have underflowed or overflowed
         if (1.0 / HUGE..=HUGE).contains(&squares.hi) {
             Self { draws: count, sum, sum_exponent: 0, squares, exponent: 0 }
         } else {
@@ -322,7 +323,7 @@ impl Moments {
         }
     }
 
-    /// Tiny, huge or non-finite draws: one at a time, which is exact for every exponent.
+    /// Tiny, huge or non-finite draws: merged one at a time, which works for every exponent.
     #[cold]
     fn of_extreme_slice(draws: &[f64]) -> Self {
         draws.iter().fold(Self::NONE, |moments, &draw| moments.merged(&Self::of_equal(draw, 1)))
@@ -351,7 +352,7 @@ impl FromIterator<f64> for Estimate {
     }
 }
 
-/// The mean and its 95 % interval, to the digits that this leaves meaningful: `0.31276 ± 0.00024 (95 %)`.
+/// The mean and its 95 % confidence interval, to their significant digits: `0.31276 ± 0.00024 (95 %)`.
 impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.reach() {
@@ -361,7 +362,7 @@ impl fmt::Display for Estimate {
     }
 }
 
-/// Their sum, and that of the squares about their mean.
+/// The sum of the draws, and the sum of squares about their mean.
 struct TwoPasses<'a> {
     draws: &'a [f64],
 }
@@ -380,11 +381,11 @@ impl NullaryFnOnce for TwoPasses<'_> {
     }
 }
 
-/// Sums side by side: as many as fill the widest vectors twice.
+/// Independent partial sums: twice as many as the widest vectors hold.
 const LANES: usize = 16;
 
-/// The sum of `f` over the draws, in interleaved lanes, each with what rounding took from it as `two_sum`
-/// finds it.
+/// The sum of `f` over the draws, in interleaved lanes, each with its accumulated rounding error from
+/// `two_sum`.
 #[inline(always)]
 fn total(draws: &[f64], f: impl Fn(f64) -> f64, two_sum: impl Fn(f64, f64) -> (f64, f64)) -> Twofold {
     let (mut sums, mut lost) = ([0.0; LANES], [0.0; LANES]);
@@ -404,8 +405,8 @@ fn total(draws: &[f64], f: impl Fn(f64) -> f64, two_sum: impl Fn(f64, f64) -> (f
     in_pairs(sums, lost)
 }
 
-/// The sum of all lanes, in pairs and pairs of pairs: a function of its own, or the compiler would arrange
-/// the loop before it in its order.
+/// The sum of all lanes, in pairs and pairs of pairs. Not inlined: otherwise the compiler reorders the lanes
+/// of the loop before it.
 #[inline(never)]
 fn in_pairs(mut sums: [f64; LANES], mut lost: [f64; LANES]) -> Twofold {
     for half in [8, 4, 2, 1] {
@@ -418,14 +419,14 @@ fn in_pairs(mut sums: [f64; LANES], mut lost: [f64; LANES]) -> Twofold {
     Twofold::normal(sums[0], lost[0])
 }
 
-/// [`two_sum`] in half the time where |a| ≥ |b|, and no worse than a plain sum elsewhere (Dekker).
+/// [`two_sum`] in half the time if |a| ≥ |b|, and no worse than a plain sum otherwise (Dekker).
 #[inline(always)]
 fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     (sum, b - (sum - a))
 }
 
-/// The exponent about which `delta`² is kept.
+/// The exponent by which `delta`² is scaled.
 fn exponent_of(delta: f64) -> i32 {
     let size = delta.abs();
     if size < DOWN.sqrt() {
@@ -451,12 +452,13 @@ fn scale(x: f64, exponent: i32) -> f64 {
     unscale(x, -exponent)
 }
 
-/// Squares kept about `from`, expressed about `to` ≥ `from`; what underflows is below any rounding.
+/// Rescales squares from exponent `from` to `to` ≥ `from`; what underflows is smaller than the rounding
+/// error.
 fn lower(squares: Twofold, from: i32, to: i32) -> Twofold {
     (from..to).step_by(STEP as usize).fold(squares, |kept, _| kept.times(DOWN).times(DOWN))
 }
 
-/// An unevaluated sum `hi + lo` with |lo| ≤ ½ ulp(hi): twice the digits of `f64` (Dekker 1971).
+/// A double-double: the unevaluated sum `hi + lo` with |lo| ≤ ½ ulp(hi) (Dekker 1971).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Twofold {
     #[serde(with = "any_number")]
@@ -465,7 +467,7 @@ struct Twofold {
     lo: f64,
 }
 
-/// JSON has no number that is not finite: those are the strings `inf`, `-inf` and `NaN`.
+/// JSON has no infinity or NaN: they are written as the strings `inf`, `-inf` and `NaN`.
 mod any_number {
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
@@ -508,7 +510,7 @@ impl Twofold {
         if sum.is_finite() { Self::normal(sum, self.lo + lost) } else { Self { hi: sum, lo: 0.0 } }
     }
 
-    /// The same without carrying `lo` over to `hi`, which the next addition would have to wait for.
+    /// The same without renormalizing, for which the next addition would have to wait.
     #[inline(always)]
     fn loosely_plus(self, x: f64, two_sum: impl Fn(f64, f64) -> (f64, f64)) -> Self {
         let (hi, lost) = two_sum(self.hi, x);

@@ -1,5 +1,4 @@
-//! The one formula, ⟨Fₙ⟩ = 1/n Σ f(Xᵢ)/p(Xᵢ), and what is under it: an estimator is a function of uniform
-//! numbers.
+//! The formula ⟨Fₙ⟩ = 1/n Σ f(Xᵢ)/p(Xᵢ). An estimator is a function of uniform random numbers.
 
 use pulp::NullaryFnOnce;
 
@@ -7,7 +6,7 @@ use crate::doubt::Doubt;
 use crate::fast::widest;
 use crate::stream::{LANES, Stream};
 
-/// Something that can be drawn: each draw is one independent, unbiased value of the quantity estimated.
+/// An estimator: each draw is one independent value whose mean is the quantity estimated.
 ///
 /// ```
 /// use unbiased::{Estimator, Stream};
@@ -27,17 +26,17 @@ use crate::stream::{LANES, Stream};
 /// # Ok::<(), unbiased::Error>(())
 /// ```
 pub trait Estimator: Sync {
-    /// One draw, from the numbers that `rng` gives.
+    /// One draw, made from random numbers of `rng`.
     fn draw(&self, rng: &mut Stream) -> f64;
 
-    /// Fills `draws` with the next draws of the stream: the same as [`draw`](Self::draw) and
-    /// [`Stream::next_draw`] by turns, though not in this order. An estimator that can make many side by side
-    /// overrides it.
+    /// Fills `draws` with the next draws of the stream: the same values as alternate calls of
+    /// [`draw`](Self::draw) and [`Stream::next_draw`], though not computed in this order. Override it where
+    /// many draws can be computed together.
     fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
         rng.one_at_a_time(draws, |rng| self.draw(rng));
     }
 
-    /// Why error bars made of its draws are not to be trusted, where its parameters tell.
+    /// Why error bars of its draws cannot be trusted, if its parameters imply that.
     fn doubt(&self) -> Option<Doubt> {
         None
     }
@@ -74,7 +73,7 @@ where
     }
 }
 
-/// An estimator whose draw is what a closure makes of any number of uniform numbers, as many as it takes.
+/// An estimator whose draw is the value of a closure, which may take any number of uniform numbers.
 ///
 /// ```
 /// use unbiased::{Budget, estimate, from_fn};
@@ -99,10 +98,10 @@ impl<F: Fn(&mut Stream) -> f64 + Sync> Estimator for FromFn<F> {
     }
 }
 
-/// An estimator whose draw is what a closure makes of N uniform numbers. It counts one evaluation a draw.
+/// An estimator whose draw is the value of a closure of N uniform numbers. It counts one evaluation per draw.
 ///
-/// Many draws are made side by side, in vectors where the closure's arithmetic allows: [`fast`](crate::fast)
-/// has functions that do.
+/// Many draws are computed together, vectorised if the closure's arithmetic allows it; the functions of
+/// [`fast`](crate::fast) do.
 ///
 /// ```
 /// use unbiased::{Budget, estimate, from_uniforms};
@@ -148,10 +147,10 @@ impl<const N: usize, F: Fn([f64; N]) -> f64 + Sync> Estimator for FromUniforms<N
     }
 }
 
-/// Draws whose numbers wait in the first-level cache.
+/// Draws computed at a time: their random numbers fit into the first-level cache.
 const MANY: usize = 8 * LANES;
 
-/// `f` of the numbers of each draw.
+/// Evaluates `f` at the numbers of each draw.
 struct Evaluate<'a, const N: usize, F> {
     f: &'a F,
     numbers: &'a [[f64; MANY]; N],
@@ -167,8 +166,8 @@ impl<const N: usize, F: Fn([f64; N]) -> f64> NullaryFnOnce for Evaluate<'_, N, F
     }
 }
 
-/// As arguments of their own the compiler knows them apart: a store into `draws` does not change what `f`
-/// holds.
+/// Separate arguments, so that the compiler knows they do not alias: a store into `draws` does not change
+/// what `f` holds.
 #[inline(always)]
 fn evaluate<const N: usize, F: Fn([f64; N]) -> f64>(f: &F, numbers: &[[f64; MANY]; N], draws: &mut [f64]) {
     for place in 0..draws.len().min(MANY) {
@@ -176,16 +175,16 @@ fn evaluate<const N: usize, F: Fn([f64; N]) -> f64>(f: &F, numbers: &[[f64; MANY
     }
 }
 
-/// A probability density that can be drawn from, by N uniform numbers.
+/// A probability density, and how to sample it from N uniform numbers.
 ///
 /// # Contract
-/// `pdf` is the density of `warp` of uniform numbers: it integrates to 1 over the points that can be drawn
-/// and is positive at every one of them. Units are those of 1/\[point\].
+/// `pdf` is the density of the points that `warp` returns for uniform numbers: it integrates to 1 over them
+/// and is positive at each. Its units are 1/(units of the sampled domain), such as 1/sr.
 ///
 /// ```
 /// use unbiased::{Budget, Density, estimate, f_over_p};
 ///
-/// /// p(x) = 2x on [0, 1), the inverse of whose cdf x² is √u.
+/// /// p(x) = 2x on [0, 1); its cdf x² has the inverse √u.
 /// struct Rising;
 ///
 /// impl Density<1> for Rising {
@@ -206,13 +205,13 @@ fn evaluate<const N: usize, F: Fn([f64; N]) -> f64>(f: &F, numbers: &[[f64; MANY
 /// # Ok::<(), unbiased::Error>(())
 /// ```
 pub trait Density<const N: usize>: Sync {
-    /// What is drawn: a number, a point of the plane, a direction.
+    /// The type of a sample: a number, a point in the plane, a direction.
     type Point;
 
-    /// The point that N uniform numbers of [0, 1) are turned into.
+    /// Maps N uniform numbers in [0, 1) to a point.
     fn warp(&self, u: [f64; N]) -> Self::Point;
 
-    /// The density at `x`; 0 where nothing is drawn.
+    /// The density at `x`; 0 at points that are never sampled.
     fn pdf(&self, x: &Self::Point) -> f64;
 }
 
@@ -232,15 +231,15 @@ impl<const N: usize, D: Density<N> + ?Sized> Density<N> for &D {
 
 /// The estimator f(X)/p(X) of ∫ f, X drawn from `density`.
 ///
-/// It is unbiased if p > 0 wherever f ≠ 0 and ∫ |f| is finite; its variance is ∫ f²/p − (∫ f)², which is 0
-/// exactly when p is proportional to an f of one sign. (Worksheet 2.1, 3.4, 3.5; *Physically Based
-/// Rendering*, 4th ed., section 2.1.3.) Where a point is drawn at which p is 0, the density's two halves do
-/// not belong together; the draw is then NaN or infinite, which ends a run with an error.
+/// It is unbiased if p > 0 wherever f ≠ 0 and ∫ |f| is finite. Its variance is ∫ f²/p − (∫ f)², which is 0
+/// exactly if p is proportional to f and f does not change sign. If `warp` returns a point at which `pdf` is
+/// 0, the two do not belong together; the draw is then NaN or infinite, and the run ends with an error.
+/// (Worksheet 2.1, 3.4, 3.5; *Physically Based Rendering*, 4th ed., section 2.1.3.)
 ///
 /// ```
 /// use unbiased::{Budget, estimate, f_over_p, lambertian::hemisphere::Hemisphere};
 ///
-/// // ∫ cos θ dω over the hemisphere is π; a density in proportion to cos θ has no variance at all
+/// // ∫ cos θ dω over the hemisphere is π; with a density proportional to cos θ the variance is 0
 /// let estimate = estimate(&f_over_p(|w| w.cos_theta(), Hemisphere::Cosine), Budget::Draws(100), 1)?;
 /// assert!((estimate.mean() - std::f64::consts::PI).abs() < 1e-14);
 /// # Ok::<(), unbiased::Error>(())

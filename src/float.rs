@@ -1,8 +1,9 @@
-//! Numbers of 106 bits with an exponent of their own: closed forms are computed in them and rounded once, at
-//! the end.
+//! Double-double numbers (106 bits) with a wide exponent range: closed forms are computed in them and rounded
+//! once, at the end.
 //!
-//! In `f64` a formula of ten operations is off by up to ten halves of the last place, and a square that over-
-//! or underflows on the way loses everything. (Dekker 1971; Hida, Li & Bailey 2001.)
+//! In `f64` a formula of ten operations has up to ten rounding errors of half a unit in the last place, and
+//! an intermediate square that over- or underflows makes the result useless. (Dekker 1971; Hida, Li & Bailey
+//! 2001.)
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -19,7 +20,7 @@ const fn power_of_two(n: i64) -> f64 {
     f64::from_bits(((1023 + n) as u64) << 52)
 }
 
-/// a + b and what rounding took from it (Knuth).
+/// a + b rounded, and the exact rounding error (Knuth).
 #[inline(always)]
 pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
@@ -54,7 +55,7 @@ impl Extended {
 
     /// The nearest `f64`: subnormal, 0 or infinite where that is nearest.
     pub(crate) fn round(self) -> f64 {
-        // in two steps, of which only the last can round
+        // in two steps, of which only the second can round
         let exponent = self.exponent.clamp(-1200, 1200);
         let half = exponent / 2;
         self.hi * power_of_two(half) * power_of_two(exponent - half)
@@ -78,13 +79,13 @@ impl Extended {
         }
         let odd = self.exponent.rem_euclid(2);
         let (hi, lo) = (self.hi * power_of_two(odd), self.lo * power_of_two(odd));
-        // Newton's step from the root in f64
+        // one Newton step from the root in f64
         let root = hi.sqrt();
         let rest = root.mul_add(-root, hi) + lo;
         Self::normal(root, rest / (2.0 * root), (self.exponent - odd) / 2)
     }
 
-    /// xⁿ and 1 + x + … + xⁿ⁻¹, by doubling n: for 0 ≤ x all terms are positive, so nothing cancels.
+    /// xⁿ and 1 + x + … + xⁿ⁻¹, by doubling n: for x ≥ 0 all terms are positive, so there is no cancellation.
     pub(crate) fn powers(self, n: u64) -> (Self, Self) {
         let (mut power, mut sum) = (Self::ONE, Self::from(0.0));
         for bit in (0..u64::BITS - n.leading_zeros()).rev() {
@@ -163,11 +164,11 @@ impl Div for Extended {
     }
 }
 
-/// What a cdf may be off by: sums of weights end an ulp or two from 1, and library cdfs are good to 1e-14
-/// only.
+/// The error allowed in a cdf: sums of weights end an ulp or two from 1, and library cdfs are accurate to
+/// 1e-14 only.
 pub const ROUNDING: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Whether it is in [0, 1] but for rounding. NaN is not.
+/// Whether a value is in [0, 1] up to rounding. NaN is not.
 pub fn is_probability(computed: f64) -> bool {
     (-ROUNDING..=1.0 + ROUNDING).contains(&computed)
 }
@@ -176,8 +177,8 @@ pub fn is_probability(computed: f64) -> bool {
 mod tests {
     use super::Extended;
 
-    /// Exact in f64, so every digit is checked; the last places of the sums of 106 bits are those of the
-    /// tests of the closed forms.
+    /// The results are exact in f64, so every digit is checked; the tests of the closed forms check the
+    /// digits beyond f64.
     #[test]
     fn operations_keep_what_f64_loses() {
         let w = Extended::from;
@@ -190,11 +191,11 @@ mod tests {
         for x in [2.0, 3.0, 1e-301, 7e300, tiny] {
             assert!(((w(x).sqrt().squared() - w(x)) / w(x)).round().abs() <= 2f64.powi(-102), "{x}");
         }
-        // numbers with more digits than f64 has, of an even and an odd exponent
+        // numbers with more digits than f64 has, with an even and an odd exponent
         for x in [w(1.0) / w(3.0), w(2.0) / w(3.0)] {
             assert!(((x.sqrt().squared() - x) / x).round().abs() <= 2f64.powi(-102));
         }
-        // on the way beyond f64 and back, at every end
+        // intermediate results beyond f64's range, at both ends
         for x in [f64::MAX, -f64::MAX, f64::MIN_POSITIVE, tiny, -3.0 * tiny, 0.1] {
             assert_eq!(w(x).round().to_bits(), x.to_bits());
             assert_eq!((w(x) * w(f64::MAX) * w(f64::MAX) / w(f64::MAX) / w(f64::MAX)).round(), x);

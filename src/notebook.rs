@@ -1,10 +1,9 @@
-//! Values shown as what they are in a Jupyter notebook, with [evcxr](https://github.com/evcxr/evcxr)'s Rust
-//! kernel.
+//! Shows values in a Jupyter notebook with [evcxr](https://github.com/evcxr/evcxr)'s Rust kernel.
 //!
 //! A cell that ends in a [`Figure`], an [`Estimate`], a verdict of [`check`], a [`Table`] or a [`Comparison`]
-//! shows HTML, and plain text where the viewer has nothing better: the kernel calls the type's
-//! `evcxr_display`. A figure is an image with its title and description as alternative text. The five
-//! notebooks of the worksheet are in `notebooks/`.
+//! shows it as HTML, or as plain text if the viewer cannot show HTML: the kernel calls the type's
+//! `evcxr_display`. A figure is an image with its title and description as alternative text. The worksheet's
+//! five notebooks are in `notebooks/`.
 
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
@@ -34,12 +33,12 @@ impl Shown {
         Self { plain, html: markup.into_string() }
     }
 
-    /// A sentence, with a mark in front that says whether it is good news.
+    /// A sentence after a mark: ✓ for true, ✗ for false, ? for none.
     fn verdict(good: Option<bool>, sentence: &str) -> Self {
         Self::new(sentence.into(), said(good, sentence))
     }
 
-    /// As plain text, for viewers that show nothing else.
+    /// As plain text, for viewers that cannot show HTML.
     pub fn plain(&self) -> &str {
         &self.plain
     }
@@ -49,19 +48,19 @@ impl Shown {
         &self.html
     }
 
-    /// Writes it to standard output between the lines by which the kernel knows it.
+    /// Writes it to standard output between the marker lines that the kernel looks for.
     fn print(&self) {
         let mut out = String::new();
         for (kind, content) in [("text/plain", &self.plain), ("text/html", &self.html)] {
             // writing to a String cannot fail
             let _ = writeln!(out, "EVCXR_BEGIN_CONTENT {kind}\n{}\nEVCXR_END_CONTENT", content.trim());
         }
-        // nobody listens any more: nothing to be done
+        // standard output is closed: nothing can be done
         let _ = io::stdout().write_all(out.as_bytes());
     }
 }
 
-/// Something that a notebook can show.
+/// A value that a notebook can show.
 ///
 /// ```
 /// use unbiased::{Estimate, notebook::Show};
@@ -73,8 +72,8 @@ pub trait Show {
     fn show(&self) -> Shown;
 }
 
-/// The kernel looks for a method of this name on what a cell ends in; a trait's would have to be imported in
-/// every notebook.
+/// The kernel calls a method of this name on a cell's last value. It is inherent because a trait would have
+/// to be imported in every notebook.
 macro_rules! displayed {
     ($($kind:ty),*) => {
         $(impl $kind {
@@ -92,7 +91,7 @@ displayed!(
 
 impl Show for Figure {
     fn show(&self) -> Shown {
-        // as SVG the viewers would show it without a word for those who cannot see it, and some not at all
+        // not inline SVG: viewers give it no alternative text, and some do not show it
         let image = format!("data:image/svg+xml;base64,{}", BASE64_STANDARD.encode(self.svg()));
         let alt = format!("{}. {}", self.title(), self.description());
         Shown::new(self.title().into(), html! { img alt=(alt) src=(image); })
@@ -119,7 +118,7 @@ impl Show for Outcome {
     }
 }
 
-/// An estimate, and what it was made of.
+/// An estimate, and the work behind it.
 fn interval(estimate: &Estimate, work: &str) -> Shown {
     let (interval, level) = match estimate.reach() {
         Some(reach) => (plus_minus(estimate.mean(), reach), "95 %, "),
@@ -197,8 +196,8 @@ impl Show for Table {
     }
 }
 
-/// What a second bought each rival on one core of this machine, when it reaches an error, and what to mind:
-/// those without bias by rank, then the biased ones.
+/// The time of a draw, the error after a second, the time to reach an error, the efficiency and remarks: the
+/// unbiased rivals by rank, then the biased ones.
 impl Show for Comparison {
     fn show(&self) -> Shown {
         let relative = self.truth != 0.0;
@@ -220,7 +219,7 @@ impl Show for Comparison {
     }
 }
 
-/// Several estimates of one truth, side by side.
+/// A table of several estimates of one truth.
 ///
 /// ```
 /// use unbiased::{Budget, estimate, from_fn, notebook};
@@ -252,26 +251,23 @@ pub fn against(truth: f64, estimates: &[(&str, Estimate)]) -> Table {
     Table::new(&caption, ["", "mean ± 95 %", "over the truth", "std errors off", "draws"], rows)
 }
 
-/// One's own estimator, checked.
+/// The result of checking your own estimator.
 #[derive(Debug, Clone)]
 pub enum Checked {
-    /// It is not written yet: its first draw is NaN.
+    /// The estimator is not written yet: its first draw is NaN.
     Missing(&'static Exercise),
-    /// What its ratios to the truth say.
+    /// The diagnosis from its ratios to the truth.
     Found(Diagnosis),
 }
 
-/// Draws a probe: ratios to a quarter of a per cent or so.
+/// Draws per probe: ratios are then accurate to about 0.25 %.
 const DRAWS: u64 = 200_000;
 
-/// Std errors within which a ratio is certain to lie.
+/// Half-width, in std errors, of the interval reported for a ratio.
 const CERTAIN: f64 = 5.0;
 
-/// Tries an estimator on all probes of its exercise, with 200,000 draws each, and says whether it is missing,
-/// consistent with a classic mistake, or unbiased within so much.
-///
-/// # Errors
-/// If a draw other than the first is not finite.
+/// Tries an estimator on all probes of its exercise, with 200,000 draws each: it is missing, or consistent
+/// with a classic mistake, or unbiased up to a stated difference.
 ///
 /// ```
 /// use unbiased::check::{Attempt, Finding};
@@ -286,6 +282,9 @@ const CERTAIN: f64 = 5.0;
 /// assert_eq!(diagnosis.finding(), Finding::Known);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
+///
+/// # Errors
+/// If a draw other than the first is not finite.
 pub fn check_mine(mine: &Attempt<'_>) -> Result<Checked> {
     let on = |probe| {
         let run = Run::new(check::seed_of(probe, 1));
@@ -305,8 +304,8 @@ pub fn check_mine(mine: &Attempt<'_>) -> Result<Checked> {
 }
 
 impl Checked {
-    /// Where nothing is wrong: the relative difference to the truth, on every probe, that is left after five
-    /// std errors.
+    /// If nothing is wrong: the largest relative difference from the truth, over all probes, within five std
+    /// errors of the measured means.
     pub fn within(&self) -> Option<f64> {
         match self {
             Self::Found(diagnosis) if diagnosis.finding() == Finding::NothingWrong => {
@@ -356,7 +355,7 @@ fn good(diagnosis: &Diagnosis) -> Option<bool> {
 const LEFT: &str = "text-align: left";
 const FAINT: &str = "opacity: 0.7";
 
-/// A sentence behind its mark; the bar's colour says nothing that the mark does not.
+/// A sentence after its mark; the bar's colour only repeats the mark.
 fn said(good: Option<bool>, sentence: &str) -> Markup {
     let (mark, colour) = match good {
         Some(true) => ("✓", "#009E73"),
@@ -419,7 +418,7 @@ mod tests {
         let within = checked.within().unwrap();
         assert!(within > 0.0 && within <= 0.06, "{within}");
         assert!(checked.show().plain().starts_with("Unbiased within"));
-        // NaN later on is a fault of the estimator, not a missing one
+        // NaN in a later draw is a fault of the estimator, not a missing one
         let late = |_: &NumberOfBounces, rng: &mut Stream| {
             if rng.random_numbers() > 5 { f64::NAN } else { rng.uniform() }
         };

@@ -1,7 +1,7 @@
-//! Numbers as text: for people to the digits that mean something, for programs with all of them.
+//! Numbers as text: for people to their significant digits, for programs with all digits.
 
-/// The mean and the half-width of its interval, both to the digits that the half-width leaves meaningful:
-/// `0.31276 ± 0.00024`.
+/// The mean and the half-width of its interval, both rounded to two digits of the half-width: `0.31276 ±
+/// 0.00024`.
 pub(crate) fn plus_minus(mean: f64, reach: f64) -> String {
     let places = places(reach);
     if reach == 0.0 {
@@ -10,11 +10,11 @@ pub(crate) fn plus_minus(mean: f64, reach: f64) -> String {
         format!("{} ± ∞", shortened(mean))
     } else if (1e-12..1e12).contains(&reach) && mean.abs() < 1e15 {
         let mean = format!("{mean:.places$}");
-        // what rounds to 0 has no sign
+        // no "-0.000"
         let zero = mean.strip_prefix('-').filter(|digits| digits.chars().all(|c| c == '0' || c == '.'));
         format!("{} ± {reach:.places$}", zero.unwrap_or(&mean))
     } else {
-        // as far as the mean reaches above the error's last digit
+        // the mean to the error's last digit
         let digits = (mean.abs().log10().floor() - reach.log10().floor() + 1.0).clamp(0.0, 16.0);
         format!("{mean:.*e} ± {reach:.1e}", digits as usize)
     }
@@ -26,7 +26,7 @@ pub(crate) fn places(error: f64) -> usize {
     if leading.is_finite() { (1.0 - leading).clamp(0.0, 17.0) as usize } else { 6 }
 }
 
-/// Twelve significant digits at most, trailing zeros left out.
+/// At most twelve significant digits, without trailing zeros.
 pub(crate) fn shortened(value: f64) -> String {
     let rounded = format!("{value:.11e}").parse().unwrap_or(value);
     if rounded == 0.0 || (1e-6..1e12).contains(&f64::abs(rounded)) {
@@ -36,7 +36,7 @@ pub(crate) fn shortened(value: f64) -> String {
     }
 }
 
-/// A number to so many digits, trailing zeros left out: 1.2e9.
+/// Rounded to this many significant digits, without trailing zeros: 1.2e9.
 pub(crate) fn rounded(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".into();
@@ -45,7 +45,7 @@ pub(crate) fn rounded(value: f64, digits: usize) -> String {
     format!("{rounded:e}")
 }
 
-/// A number of standard errors, to two places as long as they mean something; `∞`.
+/// A number of standard errors: two decimal places below 100, none above; `∞`.
 #[cfg(feature = "workbook")]
 pub(crate) fn std_errors(z: f64) -> String {
     let (sign, size) = (if z < 0.0 { "−" } else { "" }, z.abs());
@@ -71,8 +71,8 @@ pub(crate) fn two_digits(x: f64) -> String {
     format!("{x:.*}", places as usize)
 }
 
-/// For print: so many significant digits, trailing zeros left out, powers of ten where digits would not tell:
-/// 0.000139, 1.5 × 10⁻⁹, −10¹², ∞.
+/// For print: this many significant digits, without trailing zeros, with a power of ten for very small or
+/// large numbers: 0.000139, 1.5 × 10⁻⁹, −10¹², ∞.
 #[cfg(feature = "workbook")]
 pub(crate) fn typeset(value: f64, digits: usize) -> String {
     let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
@@ -90,7 +90,7 @@ pub(crate) fn typeset(value: f64, digits: usize) -> String {
     text.replace('-', "−")
 }
 
-/// The same behind “=”, or behind “≈” where digits are left out.
+/// The same after “=”, or after “≈” if it is rounded.
 #[cfg(feature = "workbook")]
 pub(crate) fn equals(value: f64, digits: usize) -> String {
     let short = typeset(value, digits);
@@ -121,7 +121,7 @@ pub(crate) fn power_of_ten(power: i32) -> String {
     }
 }
 
-/// The unit that suits so many seconds, and how many of it are a second.
+/// The unit in which to show this time, and how many of that unit make a second.
 pub(crate) fn unit(seconds: f64) -> (f64, &'static str) {
     match seconds {
         s if s < 1e-6 => (1e9, "ns"),
@@ -131,13 +131,13 @@ pub(crate) fn unit(seconds: f64) -> (f64, &'static str) {
     }
 }
 
-/// Seconds, in the unit that suits them.
+/// A time in a suitable unit: `1.4 ns`.
 pub(crate) fn duration(seconds: f64) -> String {
     let (factor, unit) = unit(seconds);
     format!("{} {unit}", two_digits(factor * seconds))
 }
 
-/// All digits of a number, in the shorter form where the plain one is long: either is read back as the same
+/// All digits of a number, in the shorter of the plain and the scientific form: both parse back to the same
 /// number.
 pub(crate) fn parseable(number: f64) -> String {
     let (plain, scientific) = (number.to_string(), format!("{number:e}"));

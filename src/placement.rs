@@ -1,23 +1,23 @@
-//! Better placed numbers for any estimator: jittered or Sobol points in place of independent ones.
+//! Jittered or Sobol points in place of independent random numbers, for any estimator.
 //!
-//! An estimator is a function of uniform numbers, f(u₁, u₂, …). Over points that fill the unit cube more
-//! evenly than independent ones its mean is the same and varies less. [`sobol`] and [`jittered`] make an
-//! estimator of an estimator: one draw of theirs is the mean over a whole set of points. The points of a set
-//! depend on each other, but the sets, each randomised afresh, do not, so draws are independent and the error
-//! bar made of them is right.
+//! An estimator is a function of uniform numbers, f(u₁, u₂, …). Its mean over points that cover the unit cube
+//! more evenly than independent ones has the same expectation and less variance. [`sobol`] and [`jittered`]
+//! wrap an estimator: one draw of the result, a replicate, is the mean over a whole set of points. The points
+//! of a set depend on each other, but each set is randomised independently, so draws are independent and
+//! their error bar is valid.
 //!
 //! # Which dimensions matter
-//! With n points in place of n independent draws the variance falls by a factor that depends on how few
-//! numbers f hangs on, and how smoothly:
+//! With n points in place of n independent draws the variance falls by a factor that depends on how many
+//! numbers f depends on, and how smooth it is:
 //!
-//! - a smooth function of one or two numbers gains most: nearly n² (Sobol, in two dimensions or one) or n
-//!   (jittered, in two);
-//! - a jump costs most of it: only the points in cells that the jump crosses still vary;
-//! - of many numbers only the few that f mostly depends on are placed well *together*. A path's first bounce
-//!   has the first few. In the sheet's scene 4,096 points in place of as many paths of one bounce lower the
-//!   variance 3·10⁶ times, of two 280 times, of three or fifteen five times (65,536 points: 23 and 13 times),
-//!   and of two with L_o(p_j) known 4,500 times: the light of later bounces depends on all of its numbers at
-//!   once, and through the cube's edges in jumps.
+//! - a smooth function of one or two numbers gains most: a factor of nearly n² (Sobol, one or two dimensions)
+//!   or n (jittered, two dimensions);
+//! - a function with a jump gains less: the points in cells that the jump crosses still vary;
+//! - a function of many numbers gains only if it depends mostly on the first few, as only those are well
+//!   distributed *together*. A path's first bounce uses the first few. In the worksheet's scene 4,096 points
+//!   in place of as many independent paths lower the variance by these factors: 3·10⁶ for one bounce; 280 for
+//!   two; 5 for three or fifteen (65,536 points: 23 and 13); 4,500 for two with L_o(p_j) known. The light of
+//!   later bounces depends on all of their numbers at once, and jumps at the cube's edges.
 //!
 //! (*Physically Based Rendering*, 4th ed., chapter 8; Owen 1997; Burley 2020.)
 //!
@@ -43,35 +43,36 @@ use crate::fast::all_finite;
 use crate::stream::Stream;
 use crate::stream::points::{Grid, Placement, Sobol};
 
-/// Sobol's points are kept to 16 digits by `sobol_burley`, so the set repeats after 2¹⁶ of them.
+/// `sobol_burley` uses 16 bits of a point's index, so the sequence repeats after 2¹⁶ points.
 const MOST_POINTS: u64 = 1 << 16;
 
 /// The mean of n draws of `estimator` over the first n points of an Owen-scrambled Sobol sequence: number d
 /// of draw i is coordinate d of point i.
 ///
-/// For n = 2ᵐ each number takes every interval of length 1/n once, and the first two every rectangle of 2⁻ᵏ
-/// by 2^(k−m): the error of a smooth function of them falls nearly as n^(−3/2) (Owen 1997). Other n are
-/// allowed, and gain less.
+/// For n = 2ᵐ each number falls into every interval of length 1/n once, and the first two fall into every
+/// rectangle of 2⁻ᵏ by 2^(k−m) once: the error of a smooth function of them falls nearly as n^(−3/2) (Owen
+/// 1997). Other n are allowed, but gain less.
 ///
-/// The points are those of `sobol_burley`, to as many binary digits as n takes; the digits below come from
-/// the stream, as in Owen's definition. Each coordinate has 32 random bits of its own to scramble by, and
-/// every point is then exactly uniform, on the same grid of 2⁻⁵³ as [`Stream::uniform`]. Beyond 256 numbers a
-/// draw's numbers are independent.
+/// The first ⌈log₂ n⌉ binary digits are those of `sobol_burley`; further digits come from the stream, as in
+/// Owen's definition. Each coordinate is scrambled by 32 random bits of its own, and every point is exactly
+/// uniform, on the same grid of 2⁻⁵³ as [`Stream::uniform`]. After the first 256 numbers a draw's numbers are
+/// independent.
 ///
 /// # Errors
-/// If n is not from 1 to 2¹⁶, after which the sequence would repeat.
+/// If n is not from 1 to 2¹⁶: the sequence would repeat.
 pub fn sobol<E: Estimator>(estimator: E, points: u64) -> Result<Placed<E>> {
     let ok = (1..=MOST_POINTS).contains(&points);
     let points = require_count("the number of Sobol points", points, ok, "from 1 to 65536")?;
     Ok(Placed { estimator, points, side: None })
 }
 
-/// The mean of s² draws of `estimator` over one uniform point in each cell of an s × s grid: numbers 2k and
-/// 2k + 1 of a draw are a point of the plane; each plane has its cells in an order of its own.
+/// The mean of s² draws of `estimator` over one uniform point in each cell of an s × s grid. Numbers 2k and
+/// 2k + 1 of a draw are such a point; for each k the cells are in a different random order.
 ///
-/// For a function of two numbers the variance is that *within* the cells alone: if it is smooth it falls as
-/// s⁻⁴ and the error as 1/evaluations; across a jump such as a disc's edge, as evaluations^(−3/4). It is
-/// never more than with as many independent points. (*Physically Based Rendering*, 4th ed., section 2.2.1.)
+/// For a function of two numbers only the variance *within* the cells remains: it falls as s⁻⁴ if the
+/// function is smooth, so the error falls as 1/evaluations; with a jump such as a disc's edge, as
+/// evaluations^(−3/4). It is never larger than with as many independent points. (*Physically Based
+/// Rendering*, 4th ed., section 2.2.1.)
 ///
 /// # Errors
 /// If the side s is not from 1 to 256: the set would have more than 2¹⁶ points.
@@ -102,7 +103,7 @@ impl<E: Estimator> Estimator for Placed<E> {
             let count = (self.points - estimate.draws()).min(SLICE as u64) as usize;
             let draws = &mut draws[..count];
             self.estimator.fill(&mut points, draws);
-            // such a value says more than what a mean makes of it
+            // return the offending value itself, not the mean with it
             if !all_finite(draws)
                 && let Some(bad) = draws.iter().find(|draw| !draw.is_finite())
             {

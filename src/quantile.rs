@@ -1,9 +1,9 @@
 //! Student's t for a confidence level.
 //!
 //! |T| with ν degrees of freedom is at most t with probability P = I_y(½, ν/2), y = t²/(ν + t²), and larger
-//! with Q = 1 − P = I_x(ν/2, ½), x = ν/(ν + t²) (Abramowitz & Stegun 26.7.1); ln|T| has the density
-//! 2 √y x^(ν/2)/B(ν/2, ½). For few degrees of freedom, t is where the smaller of P and Q is as asked for. For
-//! many, t is Fisher's expansion about the normal quantile z (Fisher & Cornish 1960; A&S 26.7.5):
+//! with Q = 1 − P = I_x(ν/2, ½), x = ν/(ν + t²) (Abramowitz & Stegun 26.7.1); ln|T| has the density 2 √y
+//! x^(ν/2)/B(ν/2, ½). For few degrees of freedom, t is found by solving for the smaller of P and Q. For many,
+//! t is Fisher's expansion about the normal quantile z (Fisher & Cornish 1960; A&S 26.7.5):
 //!
 //! > t = z + g₁/ν + g₂/ν² + g₃/ν³ + g₄/ν⁴, g₁ = (z³ + z)/4, …
 
@@ -12,17 +12,17 @@ use std::f64::consts::SQRT_2;
 use statrs::function::beta::{beta, beta_reg};
 use statrs::function::erf::{erf_inv, erfc_inv};
 
-/// Degrees of freedom from which on the expansion is good. Its next term is near 3/40960 (z²/ν)⁵ z, since t
-/// is near √(ν(e^(z²/ν) − 1)): 1.3e-10 of t here for z = 8.3, which is that of the level next to 1.
+/// The expansion is used from this many degrees of freedom on. Its next term is near 3/40960 (z²/ν)⁵ z, since
+/// t is near √(ν(e^(z²/ν) − 1)): 1.3e-10 of t here for z = 8.3, the quantile of the largest level below 1.
 const MANY: f64 = 1000.0;
 
 /// The t with P(|T| ≤ t) = `level`, to 2e-10, for Student's T with `freedom` degrees of freedom.
 ///
 /// `freedom` is at least 1, and `level` strictly between 0 and 1.
 //
-// statrs' own quantile ends its search too early: in far tails, and at scattered ν from 1e5 on
+// statrs' own quantile stops its search too early: in far tails, and at some ν above 1e5
 pub(crate) fn student_t(freedom: f64, level: f64) -> f64 {
-    // 1 − level is exact in the upper half only; in the lower one `level` itself has the digits
+    // 1 − level is exact only for level ≥ ½; below, use `level` itself
     let upper = level >= 0.5;
     let wanted = if upper { 1.0 - level } else { level };
     let z = SQRT_2 * if upper { erfc_inv(wanted) } else { erf_inv(wanted) };
@@ -31,12 +31,13 @@ pub(crate) fn student_t(freedom: f64, level: f64) -> f64 {
     }
     let half = 0.5 * freedom;
     let beta = beta(half, 0.5);
-    // so near 0 the density is flat, and t² may underflow
+    // near 0 the density is constant, and t² may underflow
     if level < 1e-8 {
         return level * (0.5 * freedom.sqrt() * beta);
     }
     let mut t = (freedom * (z * z / freedom).exp_m1()).sqrt();
-    // Newton's steps for ln P or ln Q over ln t: both are concave, so that none goes astray; 4 are enough
+    // Newton steps for ln P or ln Q as functions of ln t: both are concave, so it converges; 4 steps are
+    // enough
     for _ in 0..5 {
         let (x, y) = (freedom / (freedom + t * t), t * t / (freedom + t * t));
         let density = 2.0 * y.sqrt() * x.powf(half) / beta;
@@ -47,7 +48,7 @@ pub(crate) fn student_t(freedom: f64, level: f64) -> f64 {
     t
 }
 
-/// t/z, with w = z².
+/// t/z, for w = z².
 fn expansion(w: f64, freedom: f64) -> f64 {
     let g1 = (w + 1.0) / 4.0;
     let g2 = ((5.0 * w + 16.0) * w + 3.0) / 96.0;

@@ -107,7 +107,7 @@ fn a_heavy_tail_is_marked() {
     let found = compare(&[Rival::new("heavy", heavy), Rival::new("light", light)], 1.0);
     assert!(found.rivals[0].heavy_tail);
     assert!(!found.rivals[1].heavy_tail);
-    assert!(found.to_string().contains("a few draws hold the variance, which may be infinite"));
+    assert!(found.to_string().contains("a few draws make up most of the variance, which may be infinite"));
     // the light one may be told apart or not: what looks best may have an infinite variance
     assert!(found.ranking().iter().all(|place| place.rank == 1 || place.rival.name == "heavy"));
 }
@@ -532,7 +532,7 @@ fn a_notebook_shows_what_to_mind() {
     ])
     .show();
     for remark in [
-        "a few draws hold the variance",
+        "a few draws make up most of the variance",
         "infinite variance",
         "overtaken by the best after",
         "not told apart",

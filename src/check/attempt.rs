@@ -1,4 +1,4 @@
-//! Estimators to be tried.
+//! Estimators to be checked.
 
 use std::fmt;
 
@@ -28,8 +28,8 @@ pub struct Attempt<'a> {
 }
 
 impl<'a> Attempt<'a> {
-    /// The estimator whose draw for a problem is `draw(problem, random numbers)`. Which exercise it belongs
-    /// to, the problem's type says.
+    /// The estimator whose draw for a problem is `draw(problem, random numbers)`. The problem's type
+    /// determines the exercise.
     pub fn new<P: Problem>(draw: impl Fn(&P, &mut Stream) -> f64 + Send + Sync + 'a) -> Self {
         Self { exercise: P::exercise(), draw: erased(draw) }
     }
@@ -60,14 +60,14 @@ impl fmt::Debug for Attempt<'_> {
     }
 }
 
-/// Draws by which the skewness is known well enough.
+/// Enough draws to estimate the skewness.
 const FIRST: u64 = 1 << 17;
 
 impl Attempt<'_> {
     /// Draws on one probe until the budget is spent, with the run's threads, limits and progress.
     ///
     /// # Errors
-    /// Those of [`Run::estimate`]; a draw that is NaN or infinite is told with the probe.
+    /// Those of [`Run::estimate`]; the error of a draw that is NaN or infinite names the probe.
     pub fn measure(
         &self,
         probe: &'static Probe,
@@ -85,7 +85,7 @@ impl Attempt<'_> {
         let found = outcome.estimate;
         let mut skewness = f64::NAN;
         if let Some(deviation) = found.variance().map(f64::sqrt).filter(|deviation| *deviation > 0.0) {
-            // the same draws again, or as many others as tell it
+            // the same draws again, or FIRST others
             let cubed = from_fn(|rng| ((mine.draw(rng) - found.mean()) / deviation).powi(3));
             let first = Budget::Draws(found.draws().min(FIRST));
             let cubes = run.estimate(&cubed, first).map(|outcome| outcome.estimate);
@@ -96,13 +96,13 @@ impl Attempt<'_> {
     }
 }
 
-/// The seed of a probe's draws: errors are added up as independent ones, so each probe has numbers of its
-/// own.
+/// The seed of a probe's draws. It differs between probes, since a diagnosis treats their errors as
+/// independent.
 pub fn seed_of(probe: &Probe, seed: u64) -> u64 {
     mix(seed.wrapping_add(mix(probe.index() as u64 + 1)))
 }
 
-/// Tries an attempt on all probes of its exercise, `draws` draws each.
+/// Measures an attempt on all probes of its exercise, with `draws` draws each.
 ///
 /// # Errors
 /// If there are fewer than 2 draws, or a draw is not finite.

@@ -1,4 +1,4 @@
-//! Where a wrong estimator can be seen to be wrong with pencil and paper.
+//! Random numbers at which an estimator is wrong, for checking by hand.
 
 use std::fmt;
 
@@ -6,20 +6,20 @@ use super::attempt::Attempt;
 use super::exercise::{Exercise, Probe};
 use crate::stream::Stream;
 
-/// Random numbers at which an estimator's draw is not the right one.
+/// Random numbers at which an estimator's draw differs from the right estimator's.
 #[derive(Debug, Clone)]
 pub struct Counterexample {
     /// The probe.
     pub probe: &'static Probe,
-    /// The uniform numbers that the draw was made of, in the order in which it took them.
+    /// The uniform numbers of the draw, in the order in which it took them.
     pub numbers: Vec<f64>,
     /// The draw.
     pub yours: f64,
-    /// What the right estimator makes of the same numbers.
+    /// The right estimator's draw from the same numbers.
     pub right: f64,
 }
 
-/// In a sentence: `For instance on “λ = 2”, at u = ½: yours is 1.39, right is 0.35.`
+/// As a sentence: `For instance on “λ = 2”, at u = ½: yours is 1.39, right is 0.35.`
 impl fmt::Display for Counterexample {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let named = self.numbers.iter().zip(["u", "v"]).map(|(number, name)| {
@@ -31,12 +31,13 @@ impl fmt::Display for Counterexample {
     }
 }
 
-/// Numbers with which one can work by hand.
+/// Uniform numbers that are easy to calculate with by hand.
 const EASY: [(f64, &str); 4] = [(0.5, "½"), (0.75, "¾"), (0.25, "¼"), (0.125, "⅛")];
 
-/// It uses its numbers as a right estimator does if both are in one constant ratio, or differ by a constant,
-/// over all points of a probe, or if their ratio at a point is the same on every probe: what they are
-/// multiplied by may be wrong, where they look is then alike.
+/// A counterexample makes sense only if the attempt uses its random numbers as a right estimator does. That
+/// is assumed if, on each probe, the ratio or the difference of the two is constant over all points, or if at
+/// each point their ratio is the same on every probe: then they sample the same points, and only a factor or
+/// a summand may be wrong.
 pub(super) fn counterexample(exercise: &'static Exercise, attempt: &Attempt<'_>) -> Option<Counterexample> {
     let probes: Vec<_> = exercise.probes().iter().filter(|probe| probe.averages_draws).collect();
     exercise.right().iter().find_map(|right| {
@@ -81,7 +82,7 @@ fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * a.abs().max(b.abs())
 }
 
-/// One ratio, or one difference, over all points of each probe.
+/// Whether on each probe the ratio, or the difference, is the same at all points.
 fn alike_on_each_probe(pairs: &[Vec<[f64; 2]>]) -> bool {
     pairs.iter().all(|pairs| {
         let one_ratio = |[yours, right]: [f64; 2]| pairs.iter().all(|[y, r]| same(y * right, r * yours));
@@ -91,7 +92,7 @@ fn alike_on_each_probe(pairs: &[Vec<[f64; 2]>]) -> bool {
     })
 }
 
-/// At each point one ratio on all probes, and none of it where there is nothing.
+/// Whether the ratio at each point is the same on all probes; points where the right draw is always 0 pass.
 fn alike_at_each_point(pairs: &[Vec<[f64; 2]>]) -> bool {
     let points = pairs.first().map_or(0, Vec::len);
     (0..points).all(|point| {

@@ -11,36 +11,34 @@ use super::measure::{Measurement, Ratio};
 use crate::error::{Error, Result};
 use crate::numbers::plus_minus;
 
-/// The probability with which the right mistake may fall outside the region.
+/// The probability that the confidence region excludes the mistake that was made.
 const REGION: f64 = 1e-4;
 
-/// The probability with which a right estimator may be taken for a wrong one.
+/// The probability that a right estimator is called wrong.
 const FALSE_ALARM: f64 = 1e-9;
 
-/// With a larger std error than this, relative to the truth, being consistent with it means nothing.
+/// With a std error larger than this, relative to the truth, there is no verdict "right".
 const COARSE: f64 = 0.1;
 
-/// With fewer draws, all of them 0, chance hits may just not have come yet: any that come up in 0.3 % of
-/// draws have come by then but with probability 1e-12.
+/// With fewer draws, all of them 0, there is no verdict, as rare hits may not have occurred yet: hits in 0.3
+/// % of draws are all missed by this many draws with probability 1e-12.
 const ZEROS: u64 = 10_000;
 
 /// With fewer draws on a probe there is no verdict.
 const FEWEST: u64 = 30;
 
-/// Names the classic mistakes that the measurements look like.
+/// Finds the classic mistakes that the measurements are consistent with.
 ///
-/// Every mistake of the [gallery](Exercise::mistakes) has a ratio to the truth on each probe. Those with
-/// Σ((measured − ratio)/error)² inside the joint confidence region of 1 − 1e-4 (χ², one degree of freedom a
-/// probe; few or skew draws count for less) are listed, the best first, and those that no probe can tell
-/// apart together, in the order in which their draws' spread fits. Where no single one fits, a constant
-/// factor times one is looked for. A right estimator is diagnosed with probability 1e-9 or so.
+/// Every [mistake](Exercise::mistakes) has a known ratio to the truth on each probe. Those for which
+/// Σ((measured − ratio)/error)² lies in the joint confidence region of level 1 − 1e-4 (χ², one degree of
+/// freedom per probe, corrected for few or skewed draws) are listed, the best fit first. Mistakes that no
+/// probe can tell apart form a group, ordered by how well their variance fits. If no single mistake fits,
+/// constant multiples of mistakes are tried. A right estimator is called wrong with a probability of about
+/// 1e-9.
 ///
-/// There is no verdict from fewer than 30 draws a probe. Draws that never varied speak for a mistake whose
-/// draws do not, or for a right estimator if they are the truth, and otherwise neither for nor against
-/// anything.
-///
-/// # Errors
-/// If there are no measurements, or they are of several exercises.
+/// There is no verdict from fewer than 30 draws per probe. Draws that are all equal are evidence for a
+/// mistake whose draws are constant, or for a right estimator if they equal the truth; otherwise they are no
+/// evidence.
 ///
 /// ```
 /// use unbiased::check::{self, Attempt, Finding};
@@ -52,6 +50,9 @@ const FEWEST: u64 = 30;
 /// assert_eq!(diagnosis.candidates().next().unwrap().name(), "multiplied by λ");
 /// # Ok::<(), unbiased::Error>(())
 /// ```
+///
+/// # Errors
+/// If there are no measurements, or they are from several exercises.
 pub fn diagnose(measurements: &[Measurement]) -> Result<Diagnosis> {
     let [first, ..] = measurements else {
         return Err(Error::TooFewDraws { statistic: "a diagnosis", needed: FEWEST, draws: 0 });
@@ -79,9 +80,9 @@ pub fn diagnose(measurements: &[Measurement]) -> Result<Diagnosis> {
     let wrong = !varied.is_empty() && !within(varied.len(), off, FALSE_ALARM);
     let fixed = |of: &&Measurement| of.never_varied() && !of.is_the_truth();
     let stuck = measurements.iter().any(|of| fixed(&of));
-    // draws of rare hits begin with zeros
-    let telling = |of: &Measurement| of.estimate.mean() != 0.0 || of.estimate.draws() >= ZEROS;
-    let constant = stuck && measurements.iter().filter(fixed).all(telling);
+    // few draws that are all 0 may just have missed rare hits
+    let enough = |of: &Measurement| of.estimate.mean() != 0.0 || of.estimate.draws() >= ZEROS;
+    let constant = stuck && measurements.iter().filter(fixed).all(enough);
 
     let singles = exercise.mistakes().iter().map(|mistake| {
         let ratio = |probe: &Probe| exercise.ratio(mistake, probe);
@@ -114,8 +115,7 @@ pub fn diagnose(measurements: &[Measurement]) -> Result<Diagnosis> {
 }
 
 impl Diagnosis {
-    /// The same, with a [counterexample](Self::counterexample) from the attempt itself, if it is wrong and
-    /// there is one.
+    /// Adds a [counterexample](Self::counterexample), if the attempt is wrong and there is one.
     pub fn shown_by(mut self, attempt: &Attempt<'_>) -> Self {
         if matches!(self.finding, Finding::Known | Finding::Unknown) {
             self.counterexample = counterexample(self.exercise, attempt);
@@ -125,7 +125,7 @@ impl Diagnosis {
 }
 
 impl Measurement {
-    /// Whether the draws are enough to say so, and consistent with the truth.
+    /// Whether the draws are consistent with the truth, and enough to say so.
     pub fn is_right(&self) -> bool {
         if self.estimate.draws() < FEWEST || self.never_varied() {
             return self.estimate.draws() >= FEWEST && self.is_the_truth();
@@ -139,7 +139,7 @@ fn per_probe(measurements: &[Measurement], ratio: impl Fn(&Probe) -> Ratio) -> V
     measurements.iter().map(|measurement| ratio(measurement.probe)).collect()
 }
 
-/// Those of the candidates that fit, the best first, and with them those that look alike.
+/// The candidates that fit, the best first, in groups of those that no probe tells apart.
 fn grouped(measurements: &[Measurement], candidates: impl Iterator<Item = Candidate>) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for candidate in candidates {
@@ -158,14 +158,14 @@ fn grouped(measurements: &[Measurement], candidates: impl Iterator<Item = Candid
     groups
 }
 
-/// Whether χ² is below what all but a share `outside` of measurements stay below; NaN is not.
+/// Whether χ² is below its quantile at 1 − `outside`; NaN is not.
 fn within(probes: usize, chi_square: f64, outside: f64) -> bool {
-    // not by a quantile at 1 − outside, which has lost the last digits of `outside`
+    // by the survival function: 1 − outside would lose the last digits of `outside`
     ChiSquared::new(probes as f64).is_ok_and(|law| law.sf(chi_square) >= outside)
 }
 
-/// How far the measured mean squares are from those of the mistake: Σ ln².
-fn strangeness(exercise: &Exercise, mistake: &Mistake, measurements: &[Measurement]) -> f64 {
+/// How far the measured mean squares are from the mistake's: Σ ln²(measured/expected).
+fn spread_misfit(exercise: &Exercise, mistake: &Mistake, measurements: &[Measurement]) -> f64 {
     let of = |measurement: &Measurement| {
         let mean = measurement.ratio().mean;
         let spread = measurement.estimate.variance()? / measurement.probe.scale().powi(2);
@@ -176,14 +176,14 @@ fn strangeness(exercise: &Exercise, mistake: &Mistake, measurements: &[Measureme
     measurements.iter().filter_map(of).sum()
 }
 
-/// What a diagnosis comes to.
+/// The result of a diagnosis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Finding {
     /// All ratios are consistent with a right estimator's.
     NothingWrong,
-    /// No verdict: too few draws, draws that never varied, or some std error above a tenth of the truth.
+    /// No verdict: too few draws, draws that are all equal, or a std error above a tenth of the truth.
     Unclear,
-    /// Wrong, and consistent with at least one classic mistake, or a constant times one.
+    /// Wrong, and consistent with at least one classic mistake, or a constant times a mistake.
     Known,
     /// Wrong, and consistent with none of the classic mistakes.
     Unknown,
@@ -198,23 +198,23 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// The constant that the draws are too large by, beside the mistake: `2`, `1/π`, `λ`.
+    /// The constant factor by which the draws are too large, in addition to the mistake: `2`, `1/π`, `λ`.
     pub fn factor(&self) -> Option<&'static str> {
         self.factor
     }
 
-    /// The mistake; none if the constant is all that is wrong.
+    /// The mistake; none if only the constant factor is wrong.
     pub fn mistake(&self) -> Option<&'static Mistake> {
         self.mistake
     }
 
-    /// A name for programs, which stays: `log10`, `2*log10`, `2*right`.
+    /// A stable name for programs: `log10`, `2*log10`, `2*right`.
     pub fn id(&self) -> String {
         let mistake = self.mistake.map_or("right", Mistake::id);
         self.factor.map_or_else(|| mistake.into(), |factor| format!("{factor}*{mistake}"))
     }
 
-    /// What it is called.
+    /// A name for people.
     pub fn name(&self) -> String {
         match (self.factor, self.mistake.map(Mistake::name)) {
             (None, mistake) => mistake.unwrap_or("nothing").into(),
@@ -231,7 +231,7 @@ impl Candidate {
 /// Candidates that the probes tried cannot tell apart.
 #[derive(Debug, Clone)]
 pub struct Group {
-    /// They, the one whose spread fits best first.
+    /// The candidates, in the order in which their variance fits.
     pub candidates: Vec<Candidate>,
     /// Σ((measured − its ratio)/error)² over the probes.
     pub chi_square: f64,
@@ -242,9 +242,9 @@ impl Group {
         if self.candidates.len() > 1 {
             self.candidates.sort_by_cached_key(|candidate| {
                 let single = candidate.mistake.filter(|_| candidate.factor.is_none());
-                let strangeness = single.map_or(0.0, |of| strangeness(exercise, of, measurements));
-                // at least 0, so the order of bits is that of numbers
-                strangeness.to_bits()
+                let spread_misfit = single.map_or(0.0, |of| spread_misfit(exercise, of, measurements));
+                // for numbers ≥ 0 the order of bits is that of the numbers
+                spread_misfit.to_bits()
             });
         }
     }
@@ -262,57 +262,56 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// What was diagnosed.
+    /// The exercise.
     pub fn exercise(&self) -> &'static Exercise {
         self.exercise
     }
 
-    /// What the diagnosis comes to.
+    /// The result.
     pub fn finding(&self) -> Finding {
         self.finding
     }
 
-    /// What it rests on.
+    /// The measurements diagnosed.
     pub fn measurements(&self) -> &[Measurement] {
         &self.measurements
     }
 
-    /// Where something is wrong: what it is consistent with, the best first. None where nothing seems wrong.
+    /// If something is wrong: what the measurements are consistent with, the best fit first; else empty.
     pub fn groups(&self) -> &[Group] {
         if self.finding == Finding::Known { &self.groups } else { &[] }
     }
 
-    /// The same, one after the other.
+    /// The candidates of all [groups](Self::groups), in order.
     pub fn candidates(&self) -> impl Iterator<Item = &Candidate> {
         self.groups().iter().flat_map(|group| &group.candidates)
     }
 
-    /// Where nothing seems wrong, or all is unclear: the mistakes that these probes and this many draws could
-    /// not see.
+    /// If nothing seems wrong, or there is no verdict: the mistakes that these probes and draws cannot
+    /// exclude.
     pub fn hidden(&self) -> impl Iterator<Item = &'static Mistake> + '_ {
         let unseen = matches!(self.finding, Finding::NothingWrong | Finding::Unclear);
         let groups = if unseen { &self.groups[..] } else { &[] };
         groups.iter().flat_map(|group| &group.candidates).filter_map(|candidate| candidate.mistake)
     }
 
-    /// How many mistakes, and constants times one, were compared.
+    /// How many mistakes, and constant multiples of mistakes, were compared.
     pub fn compared(&self) -> usize {
         self.compared
     }
 
-    /// Random numbers at which the attempt is wrong: in numbers that can be worked out by hand. Only where
-    /// its draws are functions of one or two uniform numbers, and it is plain that it uses them as the
-    /// sheet's own estimator does.
+    /// Random numbers at which the attempt is wrong, for checking by hand. Found only if its draws are
+    /// functions of one or two uniform numbers, used in the same way as in the worksheet's estimator.
     pub fn counterexample(&self) -> Option<&Counterexample> {
         self.counterexample.as_ref()
     }
 
-    /// The probes on which the draws are right, where they are wrong elsewhere.
+    /// The probes on which the draws are consistent with the truth.
     pub fn right_on(&self) -> impl Iterator<Item = &'static Probe> + '_ {
         self.measurements.iter().filter(|of| of.is_right()).map(|measurement| measurement.probe)
     }
 
-    /// Why there is no verdict, and what it would take.
+    /// Why there is no verdict, and how many draws would be needed.
     fn too_little(&self) -> String {
         let fewest = self.measurements.iter().map(|of| of.estimate.draws()).min().unwrap_or(0);
         if fewest < FEWEST {
@@ -339,7 +338,7 @@ impl Diagnosis {
     }
 }
 
-/// The diagnosis in sentences, one a line.
+/// The diagnosis in sentences, one per line.
 impl fmt::Display for Diagnosis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.finding {
@@ -403,7 +402,8 @@ mod tests {
     use super::*;
 
     /// Quantiles at both probabilities for 1 to 20 probes, by mpmath. statrs has P(χ² > x) to 3e-13, so x to
-    /// 5e-14: its relative error is P's by x times the hazard rate, which is 7 or more here.
+    /// 5e-14: the relative error of x is that of P divided by x times the hazard rate, which is 7 or more
+    /// here.
     #[test]
     fn the_region_has_its_probability() {
         let edges = [

@@ -1,4 +1,4 @@
-//! Is a sampler distributed as claimed? Bands that hold at every number of draws.
+//! Is a sampler distributed as claimed? Confidence bands for the cdf that hold for every number of draws.
 
 use std::fmt;
 
@@ -9,15 +9,15 @@ use crate::estimator::Estimator;
 use crate::float::is_probability;
 use crate::stream::Stream;
 
-/// What a comparison of draws with their claimed distribution found.
+/// The result of comparing draws with their claimed distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Agreement {
-    /// Whether the draws could be from the distribution claimed. `false` is wrong with probability at most α;
-    /// `true` proves nothing that `unseen` names.
+    /// Whether the draws are consistent with the distribution claimed. `false` is wrong with probability at
+    /// most α; `true` does not exclude the deviations that `unseen` names.
     pub agrees: bool,
-    /// The largest statistic found, as a share of the one allowed: above 1 it does not agree.
+    /// The largest statistic found, divided by the largest one allowed: above 1 the draws do not agree.
     pub strain: f64,
-    /// What was compared where the strain is largest.
+    /// The comparison that gave the largest statistic.
     pub place: Place,
     /// Draws taken.
     pub draws: usize,
@@ -27,7 +27,7 @@ pub struct Agreement {
     pub unseen: &'static str,
 }
 
-/// Where draws and claim differ most.
+/// Where the draws and the claimed distribution differ most.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Place {
     /// The empirical cdf at this value.
@@ -36,26 +36,22 @@ pub enum Place {
     First(f64),
     /// The empirical cdf of the second uniform number at this value.
     Second(f64),
-    /// The share of points in this cell of the two uniform numbers, each cut into [`CELLS`] parts, counted
-    /// from 0.
+    /// The fraction of points in this cell of the two uniform numbers, each divided into [`CELLS`] intervals,
+    /// counted from 0.
     Cell(usize, usize),
 }
 
-/// Parts into which [`points`] cuts each of the two uniform numbers.
+/// Intervals into which [`points`] divides each of the two uniform numbers.
 pub const CELLS: usize = 8;
 
-/// Compares a sampler's draws (what the estimator draws) with the cdf claimed for them.
+/// Compares the distribution of an estimator's draws with a claimed cdf.
 ///
 /// The empirical cdf of n draws stays within √(ln(2/α)/2n) of the true one, everywhere at once, with
-/// probability at least 1 − α, whatever n and whatever the distribution, discrete ones included (Dvoretzky,
-/// Kiefer & Wolfowitz 1956; Massart 1990). The number of draws is taken so that a deviation of `deviation` in
-/// the cdf is seen with probability 1 − 1e-6: n = (√(ln(2/α)/2) + √(ln(1e6)/2))²/D², 41 / D² at α = 1e-12.
-/// Draws may be infinite: then the claimed cdf's value at −∞ is its mass there, and what it lacks of 1 at the
-/// largest numbers is that at +∞.
-///
-/// # Errors
-/// If the deviation is not in (0, 1], α not in (0, 1), a draw is NaN, or the claimed cdf leaves \[0, 1\] by
-/// more than 2⁻⁴⁰.
+/// probability at least 1 − α, for every n and every distribution, including discrete ones (Dvoretzky, Kiefer
+/// & Wolfowitz 1956; Massart 1990). The number of draws is chosen so that a deviation of D = `deviation` in
+/// the cdf is detected with probability 1 − 1e-6: n = (√(ln(2/α)/2) + √(ln(1e6)/2))²/D², 41 / D² at α =
+/// 1e-12. Draws may be infinite: the claimed cdf's value at −∞ is the probability of −∞, and 1 minus its
+/// value at the largest finite number that of +∞.
 ///
 /// ```
 /// use unbiased::{check, inversion::Exponential};
@@ -66,6 +62,10 @@ pub const CELLS: usize = 8;
 /// assert!(!check::distributed_as(&exponential, |x| claimed.cdf(x), 0.01, 1e-12, 1)?.agrees);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
+///
+/// # Errors
+/// If the deviation is not in (0, 1], α not in (0, 1), a draw is NaN, or the claimed cdf leaves \[0, 1\] by
+/// more than 2⁻⁴⁰.
 pub fn distributed_as(
     sampler: &(impl Estimator + ?Sized),
     cdf: impl Fn(f64) -> f64,
@@ -73,7 +73,7 @@ pub fn distributed_as(
     alpha: f64,
     seed: u64,
 ) -> Result<Agreement> {
-    let draws = enough(deviation, alpha)?;
+    let draws = draws_for(deviation, alpha)?;
     let mut rng = Stream::new(seed, 0);
     let mut samples = vec![0.0; draws];
     sampler.fill(&mut rng, &mut samples);
@@ -88,17 +88,15 @@ pub fn distributed_as(
     })
 }
 
-/// Compares drawn points of two dimensions with the density claimed for them. `unwarp` gives the two numbers
-/// that are independent and uniform if a point has that density: the cdf of its first coordinate, say, and
-/// that of the second given the first. Each is compared by the band of [`distributed_as`], and both together
-/// over 8 × 8 cells.
+/// Compares the distribution of two-dimensional points with a claimed density. `unwarp` maps a point to two
+/// numbers that are independent and uniform if the points have that density: for example the cdf of the first
+/// coordinate, and that of the second given the first. Each is compared by the band of [`distributed_as`],
+/// and both together over 8 × 8 cells.
 ///
-/// A cell of probability p in which a share p̂ of n points fell is refused where n·kl(p̂‖p) > ln(2k/α), k
-/// the number of cells, kl the relative entropy of two coins: Chernoff's bound, exact for every n and p,
-/// where Pearson's χ² at such levels is not. Each of the three parts has α/3.
-///
-/// # Errors
-/// If the deviation is not in (0, 1], α not in (0, 1), or a number that `unwarp` gives is NaN.
+/// A cell of probability p that contains a fraction p̂ of the n points is rejected if n·kl(p̂‖p) > ln(2k/α),
+/// with k the number of cells and kl the relative entropy of two Bernoulli distributions. This is Chernoff's
+/// bound, valid for every n and p, which Pearson's χ² is not at such levels. Each of the three comparisons
+/// uses α/3.
 ///
 /// ```
 /// use std::f64::consts::TAU;
@@ -110,6 +108,9 @@ pub fn distributed_as(
 /// assert!(!check::points(&Uniform, claimed, 0.01, 1e-12, 1)?.agrees);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
+///
+/// # Errors
+/// If the deviation is not in (0, 1], α not in (0, 1), or a number that `unwarp` returns is NaN.
 pub fn points<P>(
     sampler: &impl Distribution<P>,
     unwarp: impl Fn(&P) -> [f64; 2],
@@ -118,7 +119,7 @@ pub fn points<P>(
     seed: u64,
 ) -> Result<Agreement> {
     let part = alpha / 3.0;
-    let draws = enough(deviation, part)?;
+    let draws = draws_for(deviation, part)?;
     let mut rng = Stream::new(seed, 0);
     let [mut firsts, mut seconds] = [(); 2].map(|()| Vec::with_capacity(draws));
     let mut counts = [[0u64; CELLS]; CELLS];
@@ -139,7 +140,7 @@ pub fn points<P>(
     let cells = (CELLS * CELLS) as f64;
     for (row, counts) in counts.iter().enumerate() {
         for (column, count) in counts.iter().enumerate() {
-            let entropy = draws as f64 * coin_entropy(*count as f64 / draws as f64, 1.0 / cells);
+            let entropy = draws as f64 * relative_entropy(*count as f64 / draws as f64, 1.0 / cells);
             strains.push((entropy / (2.0 * cells / part).ln(), Place::Cell(row, column)));
         }
     }
@@ -155,8 +156,8 @@ pub fn points<P>(
     })
 }
 
-/// Draws with which a deviation D shows with probability 1 − 1e-6.
-fn enough(deviation: f64, alpha: f64) -> Result<usize> {
+/// Draws with which a deviation is detected with probability 1 − 1e-6.
+fn draws_for(deviation: f64, alpha: f64) -> Result<usize> {
     require("the deviation to be seen", deviation, deviation > 0.0 && deviation <= 1.0, "in (0, 1]")?;
     require("the false-alarm probability α", alpha, alpha > 0.0 && alpha < 1.0, "strictly between 0 and 1")?;
     let reach = (0.5 * (2.0 / alpha).ln()).sqrt() + (0.5 * 1e6f64.ln()).sqrt();
@@ -169,9 +170,9 @@ fn band(draws: usize, alpha: f64) -> f64 {
     ((2.0 / alpha).ln() / (2.0 * draws as f64)).sqrt()
 }
 
-/// sup |Fₙ − F| and where it is. Equal draws are taken together, −0 and 0, too, and F just below a value
-/// stands for its left limit, so that laws with jumps are compared at both sides of each. Nothing is below
-/// −∞, and all is at most +∞: there F is not asked, and at −∞, where it is the mass of −∞, a NaN is none.
+/// sup |Fₙ − F| and where it is. Equal draws are handled together (−0 equals 0), and F at the next smaller
+/// number serves as its left limit, so that cdfs with jumps are compared on both sides of each. F(+∞) is
+/// taken to be 1 without calling `cdf`; a `cdf(−∞)` of NaN is taken to be 0.
 fn largest_deviation(samples: &mut [f64], cdf: impl Fn(f64) -> f64) -> Result<(f64, f64)> {
     samples.sort_unstable_by(f64::total_cmp);
     let n = samples.len() as f64;
@@ -180,7 +181,7 @@ fn largest_deviation(samples: &mut [f64], cdf: impl Fn(f64) -> f64) -> Result<(f
         let f = if x == f64::NEG_INFINITY && f.is_nan() { 0.0 } else { f };
         require("the claimed cdf", f, is_probability(f), "in [0, 1]")
     };
-    // the first draw, where none deviates
+    // the first draw becomes the worst if no draw deviates
     let mut worst = (f64::NEG_INFINITY, f64::NAN);
     let mut below = 0;
     for ties in samples.chunk_by(|a, b| a == b) {
@@ -200,13 +201,13 @@ fn largest_deviation(samples: &mut [f64], cdf: impl Fn(f64) -> f64) -> Result<(f
     Ok(worst)
 }
 
-/// kl(a‖b) of coins with probabilities a and b.
-fn coin_entropy(a: f64, b: f64) -> f64 {
+/// kl(a‖b) of two Bernoulli distributions with probabilities a and b.
+fn relative_entropy(a: f64, b: f64) -> f64 {
     let term = |a: f64, b: f64| if a == 0.0 { 0.0 } else { a * (a / b).ln() };
     term(a, b) + term(1.0 - a, 1.0 - b)
 }
 
-/// The finding in a sentence.
+/// The result as a sentence.
 impl fmt::Display for Agreement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let verdict = if self.agrees { "as claimed" } else { "not as claimed" };

@@ -1,5 +1,5 @@
-//! An estimator of few random numbers is a function on the unit cube: its mean and variance are integrals,
-//! without noise.
+//! Exact mean and variance of an estimator of few random numbers: it is a function on the unit cube, so they
+//! are integrals.
 
 use std::f64::consts::PI;
 use std::time::Duration;
@@ -23,37 +23,30 @@ pub struct Exact {
     pub variance: f64,
 }
 
-/// Mean and variance of an estimator that takes at most `random_numbers` uniform numbers a draw, at most 3,
-/// by adaptive quadrature over the unit cube: a check of unbiasedness with no noise and no false alarm.
+/// Mean and variance of an estimator that takes at most `random_numbers` ≤ 3 uniform numbers per draw, by
+/// adaptive quadrature over the unit cube: a check of unbiasedness without noise or false alarms.
 ///
-/// It integrates what [`Estimator::draw`] returns, by nested rules of 9 and 17 points (Clenshaw & Curtis
-/// 1960). Jumps, kinks and singularities across the axes are cornered by halving, down to the steps of 2⁻⁵³
-/// that [`Stream::uniform`] takes.
+/// It integrates the values of [`Estimator::draw`] by nested rules of 9 and 17 points (Clenshaw & Curtis
+/// 1960). Jumps, kinks and singularities at a value of one coordinate are isolated by bisection, down to
+/// 2⁻⁵³, the step of [`Stream::uniform`].
 ///
 /// # What is promised
-/// The mean is right to 1e-9 of E|X| and the variance to 1e-9 of itself. Where σ is below 4e-6 of E|X| the
-/// rounding of the draws leaves the variance fewer digits; below 5e-15 of E|X| it is given as 0.
+/// The mean is accurate to 1e-9 of E|X| and the variance to a relative error of 1e-9. If σ is below 4e-6 of
+/// E|X| the rounding of the draws makes the variance less accurate; below 5e-15 of E|X| it is given as 0.
 ///
-/// No rule knows what X is where it has not looked. So a second one looks elsewhere:
-/// - *One number:* X is compared with the polynomials that the quadrature took for it, at points 2⁻²⁰ apart
-///   or less. Whatever it does over an interval of 2⁻²⁰ ≈ 9.6e-7 or more is seen, if it is more than 1e-7 of
-///   E|X|. What it does over a shorter one of width w alone is **missed** with a probability of about 1 − 2²⁰
-///   w.
-/// - *Two or three:* the same along a diagonal of the cube, which so sees what depends on one of the numbers
-///   alone. What depends on several at once is seen by the quadrature's own points, less than a hundredth of
-///   the side apart in two dimensions and a fortieth in three, and by 16 scrambled Sobol sets of 2¹⁴ points
-///   (Owen 1997): their values must lie in the quadrature's range, a quarter of it to spare, and their means
-///   of X and of its square agree to ten std errors and a 16384th of that range. So a part of the cube that
-///   is narrower than those points in every direction may be **missed**: with a probability of about
-///   exp(−262144 a) if it fills the part a of the cube and X leaves that range there, and always if X does
-///   not.
+/// A quadrature rule cannot see X between its nodes. So X is also compared at other points:
+/// - *One number:* X is compared with the interpolating polynomials of the quadrature, at points 2⁻²⁰ apart
+///   or less. A deviation of more than 1e-7 of E|X| over an interval of 2⁻²⁰ ≈ 9.6e-7 or more is detected. A
+///   deviation over a shorter interval of width w is **missed** with a probability of about 1 − 2²⁰ w.
+/// - *Two or three:* the same along a diagonal of the cube, which detects deviations that depend on one
+///   number only. Others are detected by the quadrature's own points, less than 1/100 of the side apart in
+///   two dimensions and 1/40 in three, and by 16 scrambled Sobol sets of 2¹⁴ points (Owen 1997): their values
+///   must lie within the quadrature's range, extended by a quarter, and their means of X and X² must agree
+///   with the quadrature to ten std errors plus 1/16384 of that range. So a deviation in a region smaller
+///   than the distance of those points in every direction may be **missed**: with a probability of about
+///   exp(−262144 a) if its volume is a and X leaves that range there, and always if X does not.
 ///
-/// If a draw takes more than a microsecond, 2⁻¹⁴ ≈ 6e-5 stands in the place of 2⁻²⁰.
-///
-/// # Errors
-/// If a draw takes more numbers than that, or is not finite; if X jumps aslant to the axes; if mean or
-/// variance is infinite, or hangs on single steps of 2⁻⁵³; if the size of X, its square or its variance
-/// leaves `f64`; if the two rules disagree; or if it would take more than 3·10⁷ draws.
+/// If a draw takes more than a microsecond, 2⁻¹⁴ ≈ 6e-5 replaces 2⁻²⁰.
 ///
 /// ```
 /// use unbiased::{check, from_fn};
@@ -63,6 +56,12 @@ pub struct Exact {
 /// assert!((exact.variance - 1.0 / 0.37f64.powi(2)).abs() < 1e-8);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
+///
+/// # Errors
+/// If a draw takes more numbers than that, or is not finite; if X jumps along a line or surface that is
+/// aslant to the axes; if mean or variance is infinite, or depends on single steps of 2⁻⁵³; if the size of X,
+/// its square or its variance is outside `f64`'s range; if the two rules disagree; or if it would take more
+/// than 3·10⁷ draws.
 pub fn exactly(estimator: &(impl Estimator + ?Sized), random_numbers: usize) -> Result<Exact> {
     let count = random_numbers as u64;
     require_count("the random numbers of a draw", count, (1..=3).contains(&count), "1, 2 or 3")?;
@@ -83,62 +82,63 @@ pub fn exactly(estimator: &(impl Estimator + ?Sized), random_numbers: usize) -> 
     Ok(Exact { mean, variance: variance? })
 }
 
-/// Points at which X is compared with its polynomials: nowhere are they further apart than 2⁻²⁰.
+/// The inverse of the largest distance between points at which X is compared with its polynomials.
 const LOOKS: f64 = (1u64 << 20) as f64;
 
-/// A draw that takes longer, on the machine at hand, gets fewer looks: 2²⁰ of them would take many seconds.
+/// If a draw takes longer than this, fewer points are compared: 2²⁰ of them would take many seconds.
 const SLOW: Duration = Duration::from_micros(1);
 const FEWER_LOOKS: f64 = (1u64 << 14) as f64;
 
-/// Accuracy promised.
+/// The accuracy promised.
 const ACCURACY: f64 = 1e-9;
 
-/// Error allowed to a piece, relative to the whole: a thousand pieces stay ten times below what is promised.
+/// The error allowed in a piece, relative to the whole: for a thousand pieces the sum is a tenth of what is
+/// promised.
 const TOLERANCE: f64 = 1e-13;
 
-/// Width below which a piece's allowance shrinks with it, so that a jump is followed down to the grid.
+/// Below this width the error allowed shrinks with the width, so that a jump is bisected down to the grid.
 const NARROW: f64 = 1.0 / (1u64 << 30) as f64;
 
-/// 2⁶⁴ by the golden ratio.
+/// 2⁶⁴ divided by the golden ratio.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// Steps of the grid of uniform numbers.
+/// The number of steps of the grid of uniform numbers.
 const GRID: u64 = 1 << 53;
 
-/// One of them.
+/// The width of one step.
 const STEP: f64 = 1.0 / GRID as f64;
 
-/// A piece of no more steps is summed over all of them.
+/// A piece with at most this many steps is summed over all of them.
 const FEW: u64 = 16;
 
-/// Draws that show the scale of X, an odd number.
+/// Draws that determine the scale of X; odd, so that there is a median.
 const FIRST: usize = 255;
 
-/// The range of no values.
+/// The empty range.
 const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
-/// Evaluations after which a sweep is given up: about a second.
+/// Evaluations after which the integration is given up: about a second.
 const MOST: u64 = 30_000_000;
 
-/// Jumps along the axes at different places after which they are held to be one aslant to them.
+/// After this many jumps at different places it is assumed that one jump is aslant to the axes.
 const JUMPS: usize = 256;
 
-/// Independent scramblings of Sobol's points, the points of each, and the std errors that they may be off.
+/// Independently scrambled Sobol sets, points of each, points computed at a time, and std errors allowed.
 const SCRAMBLES: usize = 16;
 const POINTS: u32 = 1 << 14;
 const TOGETHER: usize = 1 << 10;
 const STD_ERRORS: f64 = 10.0;
 
-/// Integrals over a piece, of X in units of its own size, about a value in its middle.
+/// Integrals over a piece. X is in units of its typical size, and Y = X − its median.
 #[derive(Clone, Copy, Default)]
 struct Sums {
-    /// of Y and Y², where Y is X from that value
+    /// of Y and Y²
     moments: [f64; 2],
     /// of |X|
     size: f64,
-    /// of what the rules may be off in the moments
+    /// error bounds of the moments
     errors: [f64; 2],
-    /// of what a step of the grid up or down makes of Y and Y², by their ups and downs
+    /// how much Y and Y² could change if every node moved by one step of the grid
     steps: [f64; 2],
 }
 
@@ -152,34 +152,35 @@ impl Sums {
         self.size += weight * other.size;
     }
 
-    /// What errors are relative to.
+    /// What errors of the two moments are relative to.
     fn scales(&self) -> [f64; 2] {
         [self.size, self.moments[1]]
     }
 }
 
-/// What the rounding of X leaves of its variance.
+/// The error of the variance due to the rounding of X.
 fn noise([size, square]: [f64; 2]) -> f64 {
     let rounding = 8.0 * f64::EPSILON * size;
     2.0 * rounding * square.sqrt() + rounding * rounding
 }
 
-/// Along one axis, those before it being fixed and those after it integrated; or along all axes at once.
+/// A line of integration: along one axis, with earlier axes fixed and later ones integrated, or along a
+/// diagonal.
 #[derive(Clone, Copy)]
 enum Line {
     Axis(usize),
     Diagonal([u64; 3]),
 }
 
-/// The steps from one to another, and what was found there.
+/// An interval of a line, in steps, with the integrals over it.
 #[derive(Clone, Copy)]
 struct Piece {
     from: u64,
     to: u64,
     sums: Sums,
-    /// Between the least and the greatest of Y and of Y² at its nodes.
+    /// The difference between the largest and the smallest Y, and Y², at its nodes.
     ranges: [f64; 2],
-    /// Where it changes most and by how much, if it was summed step by step and does.
+    /// The step at which Y changes most and by how much, if the piece was summed step by step.
     jump: Option<(u64, f64)>,
     looked_at: bool,
 }
@@ -189,16 +190,16 @@ impl Piece {
         (self.to - self.from) as f64 * STEP
     }
 
-    /// Where to cut so that it need not be looked for again.
+    /// Where to cut other lines so that they need not search for the same jump.
     fn ends(&self) -> [u64; 2] {
         self.jump.map_or([self.from, self.to], |(step, _)| around(step))
     }
 
-    /// Whether its error is small beside the whole.
+    /// Whether its error is small compared with the whole.
     fn is_good(&self, scales: [f64; 2]) -> bool {
         let allowed = TOLERANCE * (self.width() / NARROW).min(1.0);
-        // A node may lie a step below its place. No jump passes for that: on more than 16 steps the two rules
-        // differ by more than 16 × 0.00597 steps of it.
+        // A node may be up to a step below its exact place. A jump is not mistaken for that: on more than 16
+        // steps it makes the two rules differ by more than 16 × 0.00597 steps times its height.
         let [one, other] = self.ranges.map(|range| 0.095 * STEP * range);
         let [error, of_square] = self.sums.errors;
         self.to - self.from <= FEW
@@ -213,13 +214,13 @@ struct Sweep<'a, E: ?Sized> {
     looks: f64,
     rng: Stream,
     point: [u64; 3],
-    /// Power of two that X is divided by: its square stays within f64.
+    /// A power of two by which X is divided, so that its square neither over- nor underflows.
     unit: f64,
-    /// The value that Y is counted from.
+    /// The median that is subtracted from X to give Y.
     middle: f64,
-    /// What errors are relative to, as a few draws show it.
+    /// What errors are relative to, estimated from the first draws.
     scales: [f64; 2],
-    /// Least and greatest Y since this was last set.
+    /// The smallest and the largest Y since this was last set.
     range: [f64; 2],
     rule: Rule,
     cuts: [Vec<u64>; 3],
@@ -229,7 +230,7 @@ struct Sweep<'a, E: ?Sized> {
 
 impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
     fn new(estimator: &'a E, dimensions: usize) -> Result<Self> {
-        // multiples of the golden ratio: evenly spread, and none but 0 at a place where jumps like to be
+        // multiples of the golden ratio: evenly spread, and except for 0 not where jumps are likely
         let pieces = [64, 16, 6].get(dimensions - 1).copied().unwrap_or(1);
         let mut cuts: Vec<u64> =
             (0..pieces).map(|k: u64| k.wrapping_mul(GOLDEN) >> 11).chain([GRID]).collect();
@@ -258,7 +259,7 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
             draws.push(sweep.draw()?);
             quickest = quickest.min(watch.elapsed());
         }
-        // however busy the machine is, one of so many draws is not held up
+        // on a busy machine at least one of these draws is not delayed
         if quickest > SLOW {
             sweep.looks = FEWER_LOOKS;
         }
@@ -267,7 +268,7 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
         if largest > 0.0 {
             sweep.unit = 2f64.powi(largest.log2().floor() as i32).max(f64::MIN_POSITIVE);
         }
-        // a median lies within a std deviation of the mean: the variance about it loses hardly a digit
+        // the median is within a std deviation of the mean, so hardly a digit of the variance is lost
         sweep.middle = draws.get(FIRST / 2).map_or(0.0, |median| median / sweep.unit);
         let mut sums = Sums::default();
         for x in draws {
@@ -283,7 +284,7 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
         self.evaluations += 1;
         if self.evaluations > MOST {
             return Err(refused(format!(
-                "it would take more than {MOST} draws, as an X of many wiggles does"
+                "it would take more than {MOST} draws, as an X that oscillates often does"
             )));
         }
         let point = self.point.get(..self.dimensions).unwrap_or_default();
@@ -313,7 +314,7 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
         Ok(Sums { moments: [y, square], size: x.abs(), ..Sums::default() })
     }
 
-    /// The integral over the axes after the line's, at this step along it.
+    /// The integrals over the axes after the line's, at this step of the line.
     #[inline]
     fn at(&mut self, line: Line, step: u64) -> Result<Sums> {
         self.go(line, step);
@@ -338,15 +339,14 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
         }
     }
 
-    /// The integral along a line, and the pieces that it was cut into. With `look`, each is looked at by the
-    /// second rule.
+    /// The integrals along a line, and its pieces. With `look`, each piece is also compared at other points.
     fn integrate(&mut self, line: Line, look: bool) -> Result<(Sums, Vec<Piece>)> {
         let cuts = self.cuts_of(line);
         let mut pieces = Vec::with_capacity(2 * cuts.len());
         for (&from, &to) in cuts.iter().zip(cuts.iter().skip(1)) {
             pieces.push(self.piece(line, from, to)?);
         }
-        // all pieces are judged by the scale of all of them, again whenever some have been halved
+        // pieces are judged relative to the whole, so all are judged again after some were halved
         loop {
             let mut whole = Sums::default();
             pieces.iter().for_each(|piece| whole.add(1.0, &piece.sums));
@@ -376,20 +376,20 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
         }
     }
 
-    /// Where a line is cut to begin with.
+    /// The initial pieces of a line.
     fn cuts_of(&self, line: Line) -> Vec<u64> {
         match line {
             Line::Axis(axis) => self.cuts.get(axis).cloned().unwrap_or_default(),
             Line::Diagonal(offsets) => {
-                // it leaves the cube at its far faces, and comes in again
+                // the diagonal leaves the cube at its far faces and continues at the opposite ones
                 let faces = offsets.map(|offset| GRID - offset);
                 merged(self.cuts.first().cloned().unwrap_or_default(), faces)
             }
         }
     }
 
-    /// Both rules on one piece, or all its steps if they are few. Both ends are nodes: a jump close to one
-    /// cannot hide.
+    /// Both rules on one piece, or all its steps if they are few. Both ends are nodes, so that a jump close
+    /// to an end is not missed.
     fn piece(&mut self, line: Line, from: u64, to: u64) -> Result<Piece> {
         let (mut sums, mut ranges) = (Sums::default(), [NOTHING; 2]);
         let mut include = |sums: &mut Sums, weight: f64, there: &Sums| {
@@ -427,14 +427,14 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
         Ok(Piece { from, to, sums, ranges, jump, looked_at: false })
     }
 
-    /// The step that holds the rule's node on a piece.
+    /// The step that contains the rule's node on a piece.
     #[inline]
     fn node(&self, from: u64, to: u64, index: usize) -> u64 {
         let (node, ..) = self.rule[index];
         (from + (0.5 * (1.0 + node) * (to - from) as f64) as u64).min(to - 1)
     }
 
-    /// Adds to a piece's errors how far X is from its polynomial at points of their own.
+    /// Raises a piece's error bounds to the difference of X from its polynomial at points that are not nodes.
     fn look(&mut self, line: Line, piece: &mut Piece) -> Result<()> {
         let Piece { from, to, .. } = *piece;
         let mut values = [0.0; NODES];
@@ -449,7 +449,7 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
         for row in 0..rows as usize {
             let (mut places, mut values) = ([0.0; LANES], [0.0; LANES]);
             for (index, (place, value)) in (row * LANES..).zip(places.iter_mut().zip(&mut values)) {
-                // an uneven part of its cell, so that it is no node
+                // an irregular fraction, so that it is not a node
                 let step = ((index as f64 + 0.382) * apart) as i64;
                 *place = step as f64;
                 self.go(line, from + step as u64);
@@ -470,7 +470,7 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
         Ok(())
     }
 
-    /// Cuts an axis where it jumps, so that no other line along it need look for the place.
+    /// Cuts an axis where X jumps, so that other lines along it need not search for the place.
     fn remember_jumps(&mut self, axis: usize, pieces: &[Piece]) -> Result<()> {
         let narrow = pieces.iter().any(|piece| piece.width() < NARROW);
         let Some(cuts) = self.cuts.get_mut(axis).filter(|_| narrow) else { return Ok(()) };
@@ -486,7 +486,7 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
         Ok(())
     }
 
-    /// Looks along the cube's diagonal, and cuts the axes wherever that line had to be cut.
+    /// Integrates along the cube's diagonal, and cuts the axes wherever that line had to be cut.
     fn look_along_the_diagonal(&mut self) -> Result<()> {
         let mut random = Stream::new(0, 1);
         let offsets = std::array::from_fn(|_| random.next_u64() >> 11);
@@ -498,7 +498,7 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
             self.point = before;
             let start = self.draw()?;
             for axis in 0..self.dimensions {
-                // a jump concerns the axis across which it is one
+                // cut only the axis along which X jumps here
                 self.point = before;
                 self.point[axis] = after[axis];
                 let change = (self.draw()? - start).abs() / self.unit;
@@ -511,7 +511,7 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
         Ok(())
     }
 
-    /// Means of Y and Y² and their std errors, by independent scrambles of Sobol's points.
+    /// Means of Y and Y² and their std errors, from independently scrambled Sobol sets.
     fn scattered(&mut self) -> Result<[[f64; 2]; 2]> {
         let mut means = [[0.0; SCRAMBLES]; 2];
         for scramble in 0..SCRAMBLES {
@@ -551,7 +551,7 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
                 format!("its {what} is known to {errors:.0e} only, where {allowed:.0e} is asked for")
             } else {
                 let steps = "single steps 2⁻⁵³ of the random numbers";
-                format!("its {what} hangs on {steps}: its variance is infinite or as good as")
+                format!("its {what} depends on {steps}: its variance is infinite or as good as")
             };
             Err(refused(reason))
         };
@@ -562,7 +562,7 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
         if !(within(size) && mean.is_finite()) {
             return Err(refused("its mean is beyond f64".into()));
         }
-        // where the first draws were all 0 the unit says nothing, and squares may have been lost
+        // if the first draws were all 0 the unit is meaningless, and squares may have underflowed
         if sums.size > 0.0 && sums.size < 1e-100 {
             return Err(refused("the squares of its draws are beyond f64".into()));
         }
@@ -580,15 +580,14 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
         Ok((mean, variance))
     }
 
-    /// Holds the integrals, and the range of Y that they met, against points that the quadrature did not
-    /// choose.
+    /// Compares the integrals and the range of Y with those from points that the quadrature did not choose.
     fn compare(&self, sums: &Sums, [least, most]: [f64; 2], scattered: [[f64; 2]; 2]) -> [Result<()>; 2] {
         let [low, high] = self.range;
         let room = 0.25 * (most - least) + 8.0 * f64::EPSILON * sums.size;
         let inside = low >= least - room && high <= most + room;
         let squares = least.abs().max(most.abs()).powi(2);
-        // all sets may miss the same part p of the one point that a jump decides on: with probability (1 −
-        // p)^16
+        // with probability (1 − p)^16 all sets miss the same fraction p of the one point that a jump affects,
+        // which no std error shows
         let jumps = [most - least, squares].map(|range| range / f64::from(POINTS));
         [0, 1].map(|order| {
             let [mean, std_error] = scattered[order];
@@ -597,7 +596,7 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
             if inside && (mean - sums.moments[order]).abs() <= allowed {
                 return Ok(());
             }
-            Err(refused("what it is at scattered points is not what the quadrature found".into()))
+            Err(refused("its values at scattered points do not agree with the quadrature".into()))
         })
     }
 }
@@ -611,7 +610,7 @@ fn widened([least, most]: [f64; 2], value: f64) -> [f64; 2] {
     [least.min(value), most.max(value)]
 }
 
-/// More cuts among those of a line, in order.
+/// The union of cuts, sorted.
 fn merged(mut cuts: Vec<u64>, more: impl IntoIterator<Item = u64>) -> Vec<u64> {
     cuts.extend(more);
     cuts.sort_unstable();
@@ -619,11 +618,11 @@ fn merged(mut cuts: Vec<u64>, more: impl IntoIterator<Item = u64>) -> Vec<u64> {
     cuts
 }
 
-/// The pieces for whose sake a line was cut further than at first.
+/// The pieces that caused a line to be cut beyond its initial pieces.
 fn causes<'p>(pieces: &'p [Piece], first: &[u64]) -> impl Iterator<Item = &'p Piece> {
     let known = |step: u64| first.binary_search(&step).is_ok();
     pieces.iter().enumerate().filter_map(move |(index, piece)| {
-        // the others are on the way to a narrower one
+        // a piece next to a much narrower one was only cut to get there
         let near = pieces.iter().skip(index.saturating_sub(2)).take(5);
         let on_the_way =
             near.into_iter().any(|other| 3 * (other.to - other.from) < 2 * (piece.to - piece.from));
@@ -632,7 +631,7 @@ fn causes<'p>(pieces: &'p [Piece], first: &[u64]) -> impl Iterator<Item = &'p Pi
     })
 }
 
-/// A piece of few steps around a jump, wide enough for one that rounding moves.
+/// A piece of few steps around a jump, wide enough for rounding to move the jump a little.
 fn around(jump: u64) -> [u64; 2] {
     let from = jump.saturating_sub(FEW / 2).min(GRID - FEW);
     [from, from + FEW]
@@ -640,13 +639,13 @@ fn around(jump: u64) -> [u64; 2] {
 
 const NODES: usize = 17;
 
-/// Places on a line that are worked on at once.
+/// Points on a line that are computed at once.
 const LANES: usize = 16;
 
-/// Node on [−1, 1], weight on a piece of width 1, and weight in the coarser rule that the same nodes serve.
+/// Node on [−1, 1], weight on a piece of width 1, and weight in the coarser rule on every second node.
 type Rule = [(f64, f64, f64); NODES];
 
-/// Clenshaw & Curtis (1960) with 17 points and, at every second of them, with 9.
+/// The rules of Clenshaw & Curtis (1960) with 17 points and, on every second of them, with 9.
 fn nested_rule() -> Rule {
     let weight = |k: usize, n: usize| {
         let angle = PI * k as f64 / n as f64;
@@ -664,7 +663,7 @@ fn nested_rule() -> Rule {
     })
 }
 
-/// Coefficients Tₖ of the polynomial through these values at the nodes.
+/// Chebyshev coefficients of the polynomial through these values at the nodes.
 fn chebyshev(values: &[f64; NODES]) -> [f64; NODES] {
     let half_at_ends = |k: usize| if k.is_multiple_of(NODES - 1) { 0.5 } else { 1.0 };
     std::array::from_fn(|k| {
@@ -676,7 +675,7 @@ fn chebyshev(values: &[f64; NODES]) -> [f64; NODES] {
     })
 }
 
-/// The polynomial of these coefficients at several places at once (Clenshaw 1955).
+/// Evaluates the polynomial with these coefficients at several points (Clenshaw 1955).
 struct Clenshaw<'a> {
     coefficients: &'a [f64; NODES],
     places: &'a [f64; LANES],

@@ -1,10 +1,10 @@
-//! What an estimator is asked for, on which problems it is tried, and the classic mistakes in it.
+//! Exercises: what an estimator should compute, the probes on which it is tried, and the classic mistakes.
 //!
-//! A topic states an exercise once: its problems, a right estimator of them, and the wrong ones, each an
-//! estimator that runs. What a mistake comes to on a problem is not derived a second time: it is the mean of
-//! the wrong estimator over scrambled Sobol points, found when it is first asked for. That rule alone is
-//! enough: over 16 sets of 1,024 points it knows the gallery's ratios to 1e-4 or so in a fraction of a
-//! millisecond each, and says how well. ([`exactly`](super::exactly()) takes up to a second for a jump.)
+//! A topic defines an exercise once: its problems, a right estimator, and the wrong ones, each as code. A
+//! mistake's ratio on a probe is not derived by hand: it is the mean of the wrong estimator over scrambled
+//! Sobol points, computed when it is first needed. With 16 sets of 1,024 points this gives a ratio to about
+//! 1e-4, with its std error, in a fraction of a millisecond. ([`exactly`](super::exactly()) takes up to a
+//! second for an integrand with a jump.)
 
 use std::fmt;
 use std::sync::OnceLock;
@@ -18,9 +18,9 @@ use crate::placement::sobol;
 use crate::run::{Budget, estimate};
 use crate::stream::Stream;
 
-/// A problem of known truth, of which an estimator is asked for.
+/// A problem with known truth, for which an estimator is to be written.
 ///
-/// One's own estimator is a closure of the problem and of random numbers: see [`Attempt::new`].
+/// Your own estimator is a closure of the problem and the random numbers: see [`Attempt::new`].
 pub trait Problem: fmt::Display + Sync + Sized + 'static {
     /// The exercise that it belongs to.
     fn exercise() -> &'static Exercise;
@@ -31,7 +31,7 @@ pub trait Problem: fmt::Display + Sync + Sized + 'static {
     /// What a right estimator's draws average to.
     fn truth(&self) -> f64;
 
-    /// What ratios are taken to, above 0: |truth|, or something of that size where the truth is 0.
+    /// What means are divided by to give ratios, above 0: |truth|, or a typical size where the truth is 0.
     fn scale(&self) -> f64 {
         self.truth().abs()
     }
@@ -41,15 +41,15 @@ pub trait Problem: fmt::Display + Sync + Sized + 'static {
         draw
     }
 
-    /// Whether that is the draw itself.
+    /// Whether the draw itself is averaged.
     fn averages_draws(&self) -> bool {
         true
     }
 
-    /// Its numbers and words by name, as a program in another language takes them.
+    /// Its parameters by name, for a program in another language.
     fn given(&self) -> Vec<(&'static str, Given)>;
 
-    /// Its parameters by symbol: a draw may be wrong by such a factor.
+    /// Its parameters by symbol, as possible wrong factors of a draw.
     fn factors(&self) -> Vec<(&'static str, f64)> {
         Vec::new()
     }
@@ -74,7 +74,7 @@ impl fmt::Display for Given {
     }
 }
 
-/// One draw: on probe number so-and-so, times a factor, from these random numbers.
+/// One draw for the probe with this index, times a factor, from these random numbers.
 pub(super) type Draw<'a> = dyn Fn(usize, f64, &mut Stream) -> f64 + Send + Sync + 'a;
 
 pub(super) fn erased<'a, P: Problem>(
@@ -110,7 +110,7 @@ impl Probe {
         self.truth
     }
 
-    /// What ratios are taken to: |truth|, or something of that size where the truth is 0.
+    /// What means are divided by to give ratios: |truth|, or a typical size where the truth is 0.
     pub fn scale(&self) -> f64 {
         self.scale
     }
@@ -120,17 +120,17 @@ impl Probe {
         self.truth / self.scale
     }
 
-    /// Its place among the exercise's probes, from 0.
+    /// Its index among the exercise's probes, from 0.
     pub fn index(&self) -> usize {
         self.index
     }
 
-    /// Its numbers and words by name.
+    /// Its parameters by name.
     pub fn given(&self) -> &[(&'static str, Given)] {
         &self.given
     }
 
-    /// Whether a ratio is not a right estimator's, as far as draws can show.
+    /// Whether draws on this probe can tell this ratio from a right estimator's.
     pub fn sees(&self, ratio: Ratio) -> bool {
         ratio.differs(Ratio::exact(self.right_ratio()))
     }
@@ -161,7 +161,7 @@ pub(crate) struct Words {
 }
 
 impl Mistake {
-    /// The mistake that `wrong` commits.
+    /// A mistake, with the estimator that makes it.
     pub(crate) fn new<P: Problem>(
         words: Words,
         wrong: impl Fn(&P, &mut Stream) -> f64 + Send + Sync + 'static,
@@ -169,7 +169,7 @@ impl Mistake {
         Self { words, index: 0, wrong: erased(wrong) }
     }
 
-    /// A name for programs, which stays: `log10`.
+    /// A stable name for programs: `log10`.
     pub fn id(&self) -> &'static str {
         self.words.id
     }
@@ -184,12 +184,12 @@ impl Mistake {
         self.words.question
     }
 
-    /// The formula that commits it.
+    /// The wrong formula.
     pub fn formula(&self) -> &'static str {
         self.words.formula
     }
 
-    /// How to mend it.
+    /// How to correct it.
     pub fn mend(&self) -> &'static str {
         self.words.mend
     }
@@ -206,20 +206,20 @@ impl fmt::Debug for Mistake {
 pub(crate) struct About {
     pub id: &'static str,
     pub name: &'static str,
-    /// Worksheet questions, each with the probe that is its own case.
+    /// Worksheet questions, each with the index of the probe that has the question's parameters.
     pub questions: &'static [(&'static str, usize)],
-    /// What one draw is, and what the words of the problems mean: lines of text.
+    /// What one draw is, and what the words in the problems mean: lines of text.
     pub draw: &'static str,
 }
 
-/// An estimator asked for: the probes that it is tried on, a right one, and the classic mistakes.
+/// An estimator to be written: the probes on which it is tried, right estimators, and the classic mistakes.
 pub struct Exercise {
     about: About,
     probes: Vec<Probe>,
     right: Vec<Box<Draw<'static>>>,
     mistakes: Vec<Mistake>,
     compounds: Vec<Compound>,
-    /// Of each probe, once asked for: the ratios of all mistakes, and of all compounds.
+    /// For each probe, once needed: the ratios of all mistakes, and of all compounds.
     found: Vec<[OnceLock<Vec<Ratio>>; 2]>,
 }
 
@@ -227,8 +227,7 @@ pub struct Exercise {
 pub(crate) type Right<P> = fn(&P, &mut Stream) -> f64;
 
 impl Exercise {
-    /// The exercise of these problems, with the right estimators whose use of their random numbers is that of
-    /// the sheet.
+    /// The exercise of these problems; the right estimators use their random numbers as the worksheet does.
     pub(crate) fn new<P: Problem>(about: About, right: &[Right<P>], mistakes: Vec<Mistake>) -> Self {
         let probe = |(index, problem): (usize, &P)| Probe {
             exercise: P::exercise,
@@ -273,12 +272,12 @@ impl Exercise {
         self.about.questions.iter().map(|(question, _)| *question)
     }
 
-    /// Its probes, the sheet's own case first.
+    /// Its probes, the worksheet's own case first.
     pub fn probes(&self) -> &[Probe] {
         &self.probes
     }
 
-    /// The same, with this question's own case first.
+    /// Its probes, with this question's own case first.
     pub fn probes_of(&self, question: &str) -> Vec<&Probe> {
         let own = self.about.questions.iter().find(|(asked, _)| *asked == question);
         let own = own.map_or(0, |(_, own)| *own);
@@ -294,7 +293,7 @@ impl Exercise {
         &self.mistakes
     }
 
-    /// What a mistake's draws average to on a probe, over [`Probe::scale`].
+    /// The mean of a mistake's draws on a probe, divided by [`Probe::scale`].
     pub fn ratio(&self, mistake: &Mistake, probe: &Probe) -> Ratio {
         let Some([found, _]) = self.found.get(probe.index) else { return Ratio::UNKNOWN };
         let of = |mistake: &Mistake| ratio_of(&*mistake.wrong, probe, 1.0);
@@ -302,38 +301,38 @@ impl Exercise {
         all.get(mistake.index).copied().unwrap_or(Ratio::UNKNOWN)
     }
 
-    /// The mean square of a mistake's draws on a probe, over the scale's: to a few per cent.
+    /// The mean square of a mistake's draws on a probe, divided by the scale squared, to a few per cent.
     pub(super) fn square(&self, mistake: &Mistake, probe: &Probe) -> f64 {
         let squared = from_fn(|rng| ((mistake.wrong)(probe.index, 1.0, rng) / probe.scale).powi(2));
         estimate(&squared, Budget::Draws(4 * POINTS), 1).map_or(f64::NAN, |square| square.mean())
     }
 
-    /// A mistake as an estimator of one's own.
+    /// A mistake, as if it were your own estimator.
     pub fn attempt_of(&'static self, mistake: &'static Mistake) -> Attempt<'static> {
         self.attempt_times(1.0, mistake)
     }
 
-    /// The same with every draw multiplied by a constant: two mistakes at once.
+    /// A mistake with every draw multiplied by a constant: two mistakes at once.
     pub fn attempt_times(&'static self, constant: f64, mistake: &'static Mistake) -> Attempt<'static> {
         let draw = move |probe, factor: f64, rng: &mut Stream| (mistake.wrong)(probe, constant * factor, rng);
         Attempt { exercise: self, draw: Box::new(draw) }
     }
 
-    /// Its right estimators: each a draw of a probe from these numbers.
+    /// Its right estimators.
     pub(super) fn right(&self) -> &[Box<Draw<'static>>] {
         &self.right
     }
 
-    /// A constant times a right estimator or a mistake.
+    /// Constants times the right estimator, and times each mistake.
     pub(super) fn compounds(&self) -> &[Compound] {
         &self.compounds
     }
 
-    /// What each compound comes to on a probe.
+    /// The ratio of each compound on a probe.
     pub(super) fn compound_ratios(&self, probe: &Probe) -> &[Ratio] {
         let Some([_, found]) = self.found.get(probe.index) else { return &[] };
         let of = |compound: &Compound| self.multiplied(compound, probe);
-        // those of the mistakes alone first: nothing waits for another inside
+        // first the mistakes' ratios, so that the parallel loop does not wait for their initialisation
         self.mistakes.first().map(|mistake| self.ratio(mistake, probe));
         found.get_or_init(|| self.compounds.par_iter().map(of).collect())
     }
@@ -378,7 +377,7 @@ fn compounds(probes: &[Probe], mistakes: &[Mistake]) -> Vec<Compound> {
     all.collect()
 }
 
-/// Constant number `which`: those of mathematics first, then the problem's parameters and their inverses.
+/// Constant number `which`: first [`CONSTANTS`], then the problem's parameters and their inverses.
 fn factor(which: usize, probe: &Probe) -> f64 {
     match (CONSTANTS.get(which), which.checked_sub(CONSTANTS.len())) {
         (None, Some(parameter)) => {
@@ -404,7 +403,7 @@ const CONSTANTS: [(&str, f64); 8] = {
     ]
 };
 
-/// Sobol points of a set, and sets: the mean over the sets has an error of its own.
+/// Sobol points per set, and number of sets: their spread gives the std error of the mean.
 const POINTS: u64 = 1 << 10;
 const SETS: u64 = 16;
 

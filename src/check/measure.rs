@@ -1,24 +1,24 @@
-//! What draws come to on the probes of an exercise.
+//! Means of draws on the probes of an exercise.
 
 use super::exercise::Probe;
 use crate::estimate::Estimate;
 
-/// A mean over a probe's scale, with its std error.
+/// A mean divided by a probe's scale, with its std error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ratio {
     /// The ratio.
     pub mean: f64,
-    /// Its std error; 0 where all draws are alike.
+    /// Its std error; 0 if all draws are equal.
     pub error: f64,
 }
 
-/// Estimators in f32 are right to about this, relative to the truth, however small their std error.
+/// The relative error allowed to estimators in f32, however small their std error.
 const ROUNDING: f64 = 1e-6;
 
-/// Ratios that differ by less than this look alike to the draws that people take.
+/// Ratios that differ by less than this are not told apart with the usual numbers of draws.
 const ALIKE: f64 = 1e-3;
 
-/// Std errors by which two means found by points certainly differ.
+/// Two means found with Sobol points differ if they are this many std errors apart.
 const APART: f64 = 6.0;
 
 impl Ratio {
@@ -36,7 +36,7 @@ impl Ratio {
         Self { mean: factor * self.mean, error: factor.abs() * self.error }
     }
 
-    /// Whether it is another ratio than `other`, by so much that draws can show it.
+    /// Whether it differs from `other` by enough for draws to show it.
     pub fn differs(self, other: Self) -> bool {
         let size = self.mean.abs().min(other.mean.abs()).max(1.0);
         let known = APART * self.error.hypot(other.error);
@@ -44,42 +44,42 @@ impl Ratio {
         !alike
     }
 
-    /// Whether draws with this ratio vary; points show it, whatever the integrand.
+    /// Whether draws with this ratio vary: then its std error over the point sets is not just rounding.
     fn varies(self) -> bool {
         self.error > 1e-13 * self.mean.abs()
     }
 }
 
-/// What draws on one probe came to.
+/// The estimate from draws on one probe.
 #[derive(Debug, Clone, Copy)]
 pub struct Measurement {
     /// The probe.
     pub probe: &'static Probe,
-    /// The mean found.
+    /// The estimate.
     pub estimate: Estimate,
-    /// The skewness of the draws, E\[(X − μ)³\]/σ³; NaN where it is not known.
+    /// The skewness of the draws, E\[(X − μ)³\]/σ³; NaN if it is not known.
     pub skewness: f64,
 }
 
 impl Measurement {
-    /// The mean found over the probe's scale, with its std error.
+    /// The mean divided by the probe's scale, with its std error.
     pub fn ratio(&self) -> Ratio {
         Ratio::of(&self.estimate, self.probe.scale())
     }
 
-    /// Whether all draws are the same.
+    /// Whether all draws were the same.
     pub fn never_varied(&self) -> bool {
         self.estimate.variance().is_none_or(|variance| variance == 0.0)
     }
 
-    /// How badly draws whose mean is `predicted` fit what was found: near χ² with one degree of freedom if
-    /// they are its draws.
+    /// How badly the measured mean fits `predicted`: nearly χ² with one degree of freedom if that is the
+    /// draws' true mean.
     ///
-    /// It is t², for a t that is not near normal where draws are few or skew. Say they are 0 but for a few
-    /// hits: with one hit where ten were due, t = −9, and yet the chance of it is 5e-4. So t² is replaced by
-    /// what the likelihood of a gamma law with the draws' skewness makes of it, where that is less, 2/κ²
-    /// (ln(1 + x) …) with x = κt and κ = γ/√n, which is Poisson's for hits; and the result by Student's, ν
-    /// ln(1 + t²/ν).
+    /// It is t², corrected where t is not nearly normal because draws are few or skewed. For example, let
+    /// draws be 0 except for rare hits: one hit where ten are expected gives t = −9, although its probability
+    /// is 5e-4. So, where that is smaller, t² is replaced by −2 times the log likelihood ratio of a gamma
+    /// distribution with the draws' skewness γ, 2/κ² (−x − ln(1 − x)) for x = κt < 0 and κ = γ/√n. For rare
+    /// hits that is the Poisson distribution's. Student's correction follows: ν ln(1 + t²/ν).
     pub(super) fn misfit(&self, predicted: Ratio) -> f64 {
         let found = self.ratio();
         if predicted.mean.is_nan() {
@@ -88,7 +88,7 @@ impl Measurement {
         let floor = ROUNDING * predicted.mean.abs().max(1.0);
         let off = found.mean - predicted.mean;
         if self.never_varied() {
-            // that varying draws never do is not to be seen as evidence for them
+            // constant draws are no evidence for a mistake whose draws vary
             let fits = off.abs() <= floor.max(APART * predicted.error) && !predicted.varies();
             return if fits { 0.0 } else { f64::INFINITY };
         }
@@ -102,18 +102,18 @@ impl Measurement {
         free * (square / free).ln_1p()
     }
 
-    /// Whether all draws are what a right estimator's mean is.
+    /// Whether the mean equals the truth, up to rounding.
     pub(super) fn is_the_truth(&self) -> bool {
         (self.ratio().mean - self.probe.right_ratio()).abs() <= ROUNDING
     }
 }
 
-/// Draws that come one after the other, from another program for instance: their mean, spread and skewness in
-/// constant memory.
+/// The mean, variance and skewness of draws that are added one at a time, from another program for instance,
+/// in constant memory.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Tally {
     estimate: Estimate,
-    /// The first draw, and the sums of the squares and cubes of the distance to it.
+    /// The first draw, and the sums of squares and cubes of the differences from it.
     pivot: f64,
     squares: f64,
     cubes: f64,
@@ -131,12 +131,12 @@ impl Tally {
         self.cubes += off * off * off;
     }
 
-    /// How many there were.
+    /// The number of draws.
     pub fn draws(&self) -> u64 {
         self.estimate.draws()
     }
 
-    /// What they came to, taken for draws on this probe.
+    /// The measurement, if the draws are those for this probe.
     pub fn on(&self, probe: &'static Probe) -> Measurement {
         let (n, shift) = (self.draws() as f64, self.estimate.mean() - self.pivot);
         let [second, third] = [self.squares / n, self.cubes / n];

@@ -1,11 +1,11 @@
-//! Is an estimator unbiased? Is a sampler distributed as claimed? And if not, which classic mistake does it
-//! look like?
+//! Is an estimator unbiased? Is a sampler distributed as claimed? If not, which classic mistake does it look
+//! like?
 //!
-//! Verdicts of [`unbiased`] and [`distributed_as`] have proven error probabilities at every sample size:
-//! nothing rests on the central limit theorem. A [diagnosis](diagnose()) compares means, as near to normal as
-//! their draws let them be; it says so.
+//! Verdicts of [`unbiased`] and [`distributed_as`] have proven error probabilities at every sample size; they
+//! do not rely on the central limit theorem. A [diagnosis](diagnose()) does: it treats means as approximately
+//! normal, with a correction for few or skewed draws.
 //!
-//! This module knows no topic: each topic states its [`Exercise`]s in its own `mistakes`.
+//! This module does not depend on the topics: each topic defines its [`Exercise`]s in its module `mistakes`.
 
 mod attempt;
 mod counterexample;

@@ -1,4 +1,4 @@
-//! The sequential test of an estimator's mean.
+//! A sequential test of an estimator's mean.
 
 use std::fmt;
 
@@ -10,25 +10,22 @@ use crate::estimate::Estimate;
 use crate::estimator::Estimator;
 use crate::run::walk_block;
 
-/// What a check says.
+/// The verdict of a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// The mean is not the truth; this is wrong with probability at most α.
     Biased,
     /// The mean is within δ of the truth; this is wrong with probability at most 2β.
     Unbiased,
-    /// Neither could be shown with the draws allowed: a failure of the check, not a pass.
+    /// Neither could be shown with the draws allowed. Do not count it as a pass.
     Undecided,
 }
 
-/// Checks whether `estimator`, whose draws lie in `range`, has the mean `truth` to within one part in a
-/// thousand, of the range where the truth is 0.
+/// Checks whether `estimator`, whose draws lie in `range`, has the mean `truth` to within 0.1 % of the truth,
+/// or of the range where the truth is 0.
 ///
-/// The short form of [`Unbiased`], with its error probabilities: a right estimator is called biased with
+/// The short form of [`Unbiased`] with its default settings: a right estimator is called biased with
 /// probability at most 1e-12.
-///
-/// # Errors
-/// Those of [`Unbiased::new`] and [`Unbiased::run`].
 ///
 /// ```
 /// use unbiased::{check, check::Verdict, from_fn};
@@ -40,21 +37,25 @@ pub enum Verdict {
 /// assert_eq!(check::unbiased(&wrong, 1.0, [0.0, 3.0])?.verdict, Verdict::Biased);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
+///
+/// # Errors
+/// Those of [`Unbiased::new`] and [`Unbiased::run`].
 pub fn unbiased(estimator: &(impl Estimator + ?Sized), truth: f64, range: [f64; 2]) -> Result<Report> {
     Unbiased::new(truth, range)?.run(estimator)
 }
 
-/// A sequential test of an estimator's mean, valid at every sample size and without the central limit
+/// A sequential test of an estimator's mean, valid for every number of draws and without the central limit
 /// theorem, for draws in a known range.
 ///
-/// It bets against the claim that the mean is μ, upwards and downwards (see the module's sources). If the
-/// claim holds, the probability that the mean of both wealths ever reaches 1/α is at most α: then the
-/// estimator is called *biased*. It is called *unbiased within δ* once a bettor against the mean μ(1 − δ) who
-/// bets upwards, and one against μ(1 + δ) who bets downwards, have each made 1/β. A right estimator takes
-/// about 40 σ²/(δμ)² draws; a factor of 2 is refuted in some hundred.
+/// It bets against the claim that the mean is μ: one bettor bets that the mean is larger, one that it is
+/// smaller, each starting with a wealth of 1. If the claim holds, the average of the two wealths ever reaches
+/// 1/α with probability at most α; once it does, the estimator is called *biased*. It is called *unbiased
+/// within δ* once a bettor who bets that the mean is larger than μ(1 − δ), and one who bets that it is
+/// smaller than μ(1 + δ), have each reached 1/β. A right estimator takes about 40 σ²/(δμ)² draws; a factor of
+/// 2 is refuted after some hundred.
 ///
-/// For draws in [0, ∞) the range's upper end may be infinite: too large a mean is then still refuted, but
-/// none can be certified.
+/// The range's upper end may be infinite: then a mean that is too large can be refuted, but no estimator can
+/// be called unbiased.
 ///
 /// Sources: Ville 1939; Waudby-Smith & Ramdas 2024; for tests of renderers Subr & Arvo 2007; Gandy & Scott
 /// 2020; Jung, Hanika & Dachsbacher 2020.
@@ -70,16 +71,16 @@ pub struct Unbiased {
     max_draws: u64,
 }
 
-/// A check's verdict, and what it rests on.
+/// A check's verdict, with its mean and settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Report {
     /// The verdict.
     pub verdict: Verdict,
     /// The mean claimed.
     pub truth: f64,
-    /// The mean found.
+    /// The estimate from all draws.
     pub estimate: Estimate,
-    /// The largest difference that is taken for none, |δμ|.
+    /// The tolerance |δμ|: a smaller difference counts as none.
     pub tolerance: f64,
     /// The probability of calling a right estimator biased.
     pub alpha: f64,
@@ -87,26 +88,26 @@ pub struct Report {
     pub seed: u64,
 }
 
-/// The bettors' wealth after some of a check's draws, as natural logarithms: 0 at the start.
+/// The bettors' wealth after some of a check's draws, as natural logarithms, which start at 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Look {
     /// The draws so far.
     pub draws: u64,
-    /// ln of the mean wealth of the two who bet against the truth, upwards and downwards: *biased* once it
-    /// reaches ln(1/α).
+    /// ln of the average wealth of the two who bet that the mean is larger or smaller than the truth:
+    /// *biased* once it reaches ln(1/α).
     pub against_truth: f64,
-    /// ln of the wealth of who bets upwards against the truth less the tolerance: too low a mean is excluded
-    /// once it reaches ln(1/β).
+    /// ln of the wealth of the bettor that the mean is larger than truth − tolerance: a lower mean is
+    /// excluded once it reaches ln(1/β).
     pub against_too_low: f64,
-    /// ln of the wealth of who bets downwards against the truth plus the tolerance; stays 0 where the range
+    /// ln of the wealth of the bettor that the mean is smaller than truth + tolerance; stays 0 if the range
     /// has no upper end.
     pub against_too_high: f64,
 }
 
 impl Unbiased {
-    /// Checks against the mean `truth`, for draws in `range`, with δ = 1e-3, α = 1e-12, β = 1e-6, seed 1 and
-    /// at most 10⁹ draws. Where the truth is 0, which no relative tolerance is a part of, a difference of
-    /// 1e-3 of the range counts as none, or of the distance to its lower end where the upper one is infinite.
+    /// A check for the mean `truth`, for draws in `range`, with δ = 1e-3, α = 1e-12, β = 1e-6, seed 1 and at
+    /// most 10⁹ draws. If the truth is 0, the tolerance is 1e-3 of the range, or of the distance to its lower
+    /// end if the upper one is infinite.
     ///
     /// # Errors
     /// If the range is empty or NaN, its lower end infinite, or the truth not strictly inside it.
@@ -119,13 +120,13 @@ impl Unbiased {
         require("the truth", truth, inside, "strictly inside the range of the draws")?;
         let range = if high.is_finite() { high - low } else { truth - low };
         let unit = if truth == 0.0 { range } else { truth.abs() };
-        // less where the truth is close to an end, beyond which nothing can be told apart
+        // smaller if the truth is close to an end of the range, which truth ± tolerance must not reach
         let tolerance = (1e-3 * unit).min(0.5 * (truth - low)).min(0.5 * (high - truth));
         require("the tolerance, a part in a thousand,", tolerance, tolerance > 0.0, "positive")?;
         Ok(Self { truth, low, high, tolerance, alpha: 1e-12, beta: 1e-6, seed: 1, max_draws: 1_000_000_000 })
     }
 
-    /// Takes a relative difference of at most δ for none.
+    /// Sets the tolerance to δ times the truth.
     ///
     /// # Errors
     /// If δ is not positive, the truth is 0 (see [`within_absolute`](Self::within_absolute)), or μ(1 ± δ)
@@ -136,7 +137,7 @@ impl Unbiased {
         self.within_absolute(delta * self.truth.abs())
     }
 
-    /// Takes a difference of at most this for none.
+    /// Sets the tolerance, in the truth's unit.
     ///
     /// # Errors
     /// If it is not positive, or the truth ± the tolerance leaves the range.
@@ -152,7 +153,7 @@ impl Unbiased {
         Ok(self)
     }
 
-    /// Calls a right estimator biased with probability at most α.
+    /// Sets α, the largest probability of calling a right estimator biased.
     ///
     /// # Errors
     /// If α is not strictly between 0 and 1.
@@ -166,7 +167,7 @@ impl Unbiased {
         Ok(self)
     }
 
-    /// Certifies each side with an error probability of at most β.
+    /// Sets β: the mean is wrongly called large enough, or small enough, with probability at most β each.
     ///
     /// # Errors
     /// If β is not strictly between 0 and 1.
@@ -176,7 +177,7 @@ impl Unbiased {
         Ok(self)
     }
 
-    /// Draws with this seed.
+    /// Sets the seed of the draws.
     pub fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
@@ -188,20 +189,17 @@ impl Unbiased {
         self
     }
 
-    /// Draws from `estimator` until there is a verdict. It is the same for any number of threads.
+    /// Draws from `estimator` until there is a verdict, which does not depend on the number of threads.
     ///
     /// # Errors
-    /// If a draw is not finite, or leaves the range: the proof would be void. (By up to 1e-12 of the range it
-    /// is rounding.)
+    /// If a draw is not finite, or is outside the range by more than 1e-12 of it: the error probabilities
+    /// would not hold.
     pub fn run(&self, estimator: &(impl Estimator + ?Sized)) -> Result<Report> {
         self.watch(estimator, |_| ())
     }
 
-    /// The same, with the bettors' wealth on the way: a look at least every 256 draws, the last one the
-    /// verdict's.
-    ///
-    /// # Errors
-    /// Those of [`run`](Self::run).
+    /// Like [`run`](Self::run), and returns the bettors' wealth at least every 256 draws; the last entry is
+    /// that at the verdict.
     ///
     /// ```
     /// use unbiased::{check::Unbiased, from_fn};
@@ -213,6 +211,9 @@ impl Unbiased {
     /// assert!(last.against_truth >= 1e12f64.ln());
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// Those of [`run`](Self::run).
     pub fn trace(&self, estimator: &(impl Estimator + ?Sized)) -> Result<(Report, Vec<Look>)> {
         let mut looks = Vec::new();
         let report = self.watch(estimator, |look| looks.push(look))?;
@@ -224,7 +225,7 @@ impl Unbiased {
         let mut wealths: [Wealth; 4] = Default::default();
         let (mut above, mut below) = (false, false);
         let mut estimate = Estimate::new();
-        // slow draws that are far off are few: the first looks come soon
+        // a badly wrong estimator is refuted by few draws: begin with small blocks
         let (mut next, mut batch, mut size) = (0, 1, FIRST_BLOCK);
         loop {
             let blocks: Vec<_> = (next..next + batch)
@@ -255,7 +256,7 @@ impl Unbiased {
                     }
                 }
             }
-            if estimate.draws() >= self.patience(&estimate) {
+            if estimate.draws() >= self.most_useful_draws(&estimate) {
                 return Ok(self.report(Verdict::Undecided, estimate));
             }
             next += batch;
@@ -272,26 +273,26 @@ impl Unbiased {
         Report { verdict, truth, estimate, tolerance, alpha, seed }
     }
 
-    /// Bets upwards and downwards against the truth, upwards against what is just too low and downwards
-    /// against what is just too high.
+    /// The four bets: that the mean is larger than the truth, smaller than the truth, larger than truth −
+    /// tolerance, and smaller than truth + tolerance.
     fn bettors(&self) -> [Bets; 4] {
         let (up, down) = (self.truth - self.low, self.high - self.truth);
         let range = self.high - self.low;
-        // the best bet on a difference of d is d·μ/σ², at least d over the other side's room, since σ² ≤
-        // up·down; without an upper end, a σ of ten times the mean is provided for
-        let timid = |room: f64| {
+        // for a difference d the best fraction is d·μ/σ², at least d/(room on the other side), since σ² ≤
+        // up·down; without an upper end, assume σ of at most ten times the mean
+        let smallest = |room: f64| {
             let room = if room.is_finite() { room } else { 100.0 * up };
             (self.tolerance / room).clamp(1e-12, 1e-3)
         };
         [
-            Bets::against(up, range, timid(down)),
-            Bets::against(down, range, timid(up)),
-            Bets::against(up - self.tolerance, range, timid(down)),
-            Bets::against(down - self.tolerance, range, timid(up)),
+            Bets::against(up, range, smallest(down)),
+            Bets::against(down, range, smallest(up)),
+            Bets::against(up - self.tolerance, range, smallest(down)),
+            Bets::against(down - self.tolerance, range, smallest(up)),
         ]
     }
 
-    /// One block of so many draws, in leaves of up to [`LEAF`].
+    /// One block of `size` draws, in leaves of up to [`LEAF`].
     fn leaves(
         &self,
         estimator: &(impl Estimator + ?Sized),
@@ -300,7 +301,7 @@ impl Unbiased {
         size: u64,
     ) -> Result<Vec<Leaf>> {
         let Self { seed, low, high, .. } = *self;
-        // rounding may take a draw past an end, by a part of the range or of the end itself
+        // rounding may push a draw slightly past an end
         let reach = if high.is_finite() { high - low } else { self.truth - low };
         let slack = |end: f64| 1e-12 * reach + 4.0 * f64::EPSILON * end.abs();
         let inside = low - slack(low)..=if high.is_finite() { high + slack(high) } else { high };
@@ -332,16 +333,16 @@ impl Unbiased {
         Ok(leaves)
     }
 
-    /// The draws after which nothing more is expected: twice what a right estimator of this variance needs
-    /// but for one run in a million.
-    fn patience(&self, estimate: &Estimate) -> u64 {
+    /// The draws after which to give up: twice what a right estimator of this variance needs in all but one
+    /// of a million runs.
+    fn most_useful_draws(&self, estimate: &Estimate) -> u64 {
         let bound = -self.beta.ln() + 10f64.ln();
         let deviations = (2.0 * bound).sqrt() + 7.0;
-        // of the std deviation, since a variance may be beyond f64
+        // not by the variance, which may overflow
         let deviation = estimate.std_error().unwrap_or(0.0) * (estimate.draws() as f64).sqrt();
         let spread = (deviation / self.tolerance).powi(2);
-        // an estimator that hardly varies still gains only about d/room a draw, on the side with the larger
-        // room
+        // even without variance the wealth grows only by a factor of about 1 + d/room per draw, on the side
+        // with more room
         let (up, down) = (self.truth - self.low, self.high - self.truth);
         let room = if down.is_finite() { up.max(down) } else { up };
         let draws = 2.0 * spread * deviations * deviations + 4.0 * bound * room / self.tolerance;
@@ -349,24 +350,24 @@ impl Unbiased {
     }
 }
 
-/// Draws between two looks at the wealth, at most.
+/// The most draws between two looks at the wealth.
 const LEAF: usize = 256;
 
-/// Draws in a block: in the first one, and at most.
+/// Draws in the first block, and in the largest ones.
 const FIRST_BLOCK: u64 = 16;
 const LARGEST_BLOCK: u64 = 1 << 14;
 
-/// Blocks in flight at a time.
+/// Blocks computed at a time.
 const MOST_BLOCKS: u64 = 64;
 
-/// What some draws did to the estimate and to each bettor's wealth.
+/// The estimate from some draws, and the growth of each bettor's wealth by them.
 struct Leaf {
     estimate: Estimate,
     growths: [Growth; 4],
 }
 
 impl Report {
-    /// The mean found, divided by the truth, with its std error.
+    /// The mean divided by the truth, with its std error.
     pub fn ratio(&self) -> (f64, f64) {
         let std_error = self.estimate.std_error().unwrap_or(f64::INFINITY);
         (self.estimate.mean() / self.truth, std_error / self.truth.abs())
@@ -391,15 +392,15 @@ impl fmt::Display for Report {
                     f,
                     "biased: {estimate} after {draws} draws, {ratio:.3} ± {error:.3} times the truth \
                      {truth}; \
-                     a right estimator would be called so with probability {:.0e} at most",
+                     a right estimator would be called biased with probability {:.0e} at most",
                     self.alpha
                 )
             }
             Verdict::Undecided => {
                 write!(
                     f,
-                    "undecided after {draws} draws: {estimate}, the truth is {truth} and a difference of \
-                     {:.1e} was to be seen",
+                    "undecided after {draws} draws: {estimate}, the truth is {truth} and the tolerance is \
+                     {:.1e}",
                     self.tolerance
                 )
             }
@@ -411,8 +412,8 @@ impl fmt::Display for Report {
 mod tests {
     use super::*;
 
-    /// The exact probability that the check calls draws of two values, 0 and 1, with the mean claimed biased
-    /// within `leaves` leaves: by dynamic programming over the number of ones.
+    /// The exact probability that the check calls draws of 0 and 1 with the claimed mean biased within
+    /// `leaves` leaves, by dynamic programming over the number of ones.
     fn false_alarm(mean: f64, alpha: f64, leaves: usize) -> f64 {
         let check = Unbiased::new(mean, [0.0, 1.0]).unwrap().within(0.01).unwrap();
         let [up, down, ..] = check.bettors();
@@ -430,7 +431,7 @@ mod tests {
             };
             0.5 * (side(&per_draw[0]) + side(&per_draw[1]))
         };
-        // the law of the ones in a leaf
+        // the distribution of the number of ones in a leaf
         let mut leaf = vec![(1.0 - mean).powi(LEAF as i32)];
         for k in 0..LEAF {
             leaf.push(leaf[k] * (LEAF - k) as f64 / (k + 1) as f64 * mean / (1.0 - mean));
@@ -457,8 +458,8 @@ mod tests {
         alarm
     }
 
-    /// Exact, not simulated: the rate is below α at every level, by a factor of 2 to 1000 over the first
-    /// 15,000 draws.
+    /// Computed exactly: the rate is below α at every level, by a factor of 2 to 1000 over the first 15,000
+    /// draws.
     #[test]
     fn false_alarms_of_two_point_draws_stay_below_alpha_at_every_level() {
         for mean in [0.5, 0.1, 0.83] {
@@ -466,7 +467,7 @@ mod tests {
                 let rate = false_alarm(mean, alpha, 60);
                 println!("mean {mean}, α = {alpha:e}: {rate:.2e}, {:.1} times below", alpha / rate);
                 assert!(rate <= alpha, "mean {mean}, α = {alpha:e}: {rate:e}");
-                assert!(rate >= 1e-3 * alpha, "mean {mean}, α = {alpha:e}: {rate:e}, the bets are too timid");
+                assert!(rate >= 1e-3 * alpha, "mean {mean}, α = {alpha:e}: {rate:e}, the bets are too small");
             }
         }
     }

@@ -1,40 +1,40 @@
-//! Betting against a mean: wealth that cannot grow if the mean is what is claimed.
+//! Tests of a mean by betting: the wealth is not expected to grow if the mean is as claimed.
 //!
-//! For draws Y ≥ 0 of mean m, 1 + f(Y/m − 1) is a fair bet of the fraction f of one's wealth: its mean is 1.
-//! The product over draws is a non-negative martingale, so the probability that it ever reaches 1/α is at
-//! most α (Ville 1939), whenever one looks and whatever the distribution. Bets of several sizes are made side
-//! by side and the wealth is their mean. (Waudby-Smith & Ramdas 2024, "Estimating means of bounded random
-//! variables by betting".)
+//! For draws Y ≥ 0 of mean m, the factor 1 + f(Y/m − 1) has mean 1: it is a fair bet of the fraction f of the
+//! wealth. The product over draws is a non-negative martingale, so the probability that it ever reaches 1/α
+//! is at most α (Ville 1939), for any distribution and any stopping rule. Bets with several fractions are
+//! made in parallel, and the wealth is the mean of theirs. (Waudby-Smith & Ramdas 2024, "Estimating means of
+//! bounded random variables by betting".)
 
-/// Sizes of bet made side by side.
+/// How many fractions are bet in parallel.
 pub(super) const BETS: usize = 10;
 
-/// The largest fraction bet: what is left after losing it all is 0.1, so wealth never vanishes.
-const BOLDEST: f64 = 0.9;
+/// The largest fraction bet: at least 0.1 of the wealth is left after a loss, so it never becomes 0.
+const LARGEST: f64 = 0.9;
 
-/// A growth of each bet's wealth, as logarithms.
+/// The logarithm of the factor by which each bet's wealth grows.
 pub(super) type Growth = [f64; BETS];
 
-/// Bets that draws in [0, largest] have a larger mean than `mean`.
+/// Bets that draws in [0, largest] have a mean larger than `mean`.
 #[derive(Debug, Clone)]
 pub(super) struct Bets {
     mean: f64,
     fractions: [f64; BETS],
-    /// How many factors can be multiplied before their product could leave f64.
+    /// How many factors can be multiplied without over- or underflow.
     run: usize,
 }
 
 impl Bets {
-    /// Against `mean` > 0, with fractions from `timid` to 0.9 in geometric steps.
-    pub fn against(mean: f64, largest: f64, timid: f64) -> Self {
-        let step = (timid / BOLDEST).powf(1.0 / (BETS - 1) as f64);
-        let fractions = std::array::from_fn(|bet| BOLDEST * step.powi(bet as i32));
+    /// Bets against `mean` > 0, with fractions from `smallest` to 0.9 in geometric steps.
+    pub fn against(mean: f64, largest: f64, smallest: f64) -> Self {
+        let step = (smallest / LARGEST).powf(1.0 / (BETS - 1) as f64);
+        let fractions = std::array::from_fn(|bet| LARGEST * step.powi(bet as i32));
         // a factor lies in [0.1, 1 + 0.9·largest/mean], and 2^±900 is well inside f64
         let bits = (1.0 + largest / mean).log2().max(10f64.log2());
         Self { mean, fractions, run: ((900.0 / bits) as usize).clamp(1, 64) }
     }
 
-    /// What the draws y, given through `shifted`, multiply each bet's wealth by.
+    /// The growth of each bet's wealth by the draws y = `shifted(draw)`.
     pub fn growth(&self, draws: &[f64], shifted: impl Fn(f64) -> f64) -> Growth {
         let mut growth = [0.0; BETS];
         let mut ratios = [0.0; 64];
@@ -67,7 +67,7 @@ fn product(ratios: &[f64], fraction: f64) -> f64 {
     lanes.iter().product()
 }
 
-/// The wealth of all bets so far.
+/// The wealth of each bet so far.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Wealth {
     logs: [Sum; BETS],

@@ -1,6 +1,6 @@
-//! The whole part.
+//! Rounding down.
 
-/// ⌊x⌋ of an x that is not negative, without a call where a processor has no instruction for it.
+/// ⌊x⌋ for x ≥ 0, without a library call on processors that have no instruction for it.
 ///
 /// ```
 /// use unbiased::fast::floor;
@@ -9,7 +9,7 @@
 /// ```
 #[inline(always)]
 pub fn floor(x: f64) -> f64 {
-    /// 2⁵², from which on every number is whole: what is added to it is rounded.
+    /// 2⁵²: from here on every `f64` is an integer, so adding x to it rounds x.
     const WHOLE: f64 = 4_503_599_627_370_496.0;
     let rounded = (x + WHOLE) - WHOLE;
     let whole = if rounded > x { rounded - 1.0 } else { rounded };

@@ -1,6 +1,6 @@
 //! The natural logarithm.
 
-/// ln x of a positive, normal x (2.2e-308 or more) to 1 ulp; nothing meaningful of any other.
+/// ln x to 1 ulp for a positive, normal x (2.2e-308 or more); meaningless for any other.
 ///
 /// With x = 2ᵏ(1 + f), √½ ≤ 1 + f < √2, and s = f/(2 + f): ln x = k ln 2 + 2s + ⅔s³ + …, by a polynomial in
 /// s² (Sun's fdlibm, `e_log.c`, 1993).
@@ -11,10 +11,10 @@
 /// ```
 #[inline(always)]
 pub fn ln(x: f64) -> f64 {
-    /// The upper part of ln 2, whose products with an exponent are exact, and the rest.
+    /// ln 2 in two parts; the product of the first with an exponent is exact.
     const LN2: [f64; 2] = [6.931_471_803_691_238_164_90e-1, 1.908_214_929_270_587_700_02e-10];
     const MANTISSA: u64 = (1 << 52) - 1;
-    /// The bits of √½, up to which an exponent begins.
+    /// The bits of √½, the lower bound of 1 + f.
     const ROOT: u64 = 0x3fe6_a09e_667f_3bcd;
     const MAGIC: u64 = 0x433 << 52; // 2⁵² holds an integer in its lowest bits
     let shifted = x.to_bits().wrapping_sub(ROOT);

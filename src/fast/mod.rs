@@ -1,16 +1,16 @@
-//! Functions and loops that go wide: plain sums, products and selections, which the compiler turns into
+//! Branch-free functions and loops of plain sums, products and selections, which the compiler turns into
 //! vector instructions.
 //!
-//! [`ln`], [`exp`], [`floor`] and [`sin_cos_of_turns`] are what drawing needs of a mathematical library,
-//! within 2 units of the last place and without a branch or a call, so that a loop over them is vectorised.
-//! The crate's own loops are compiled for each of a processor's instruction sets and chosen as the program
-//! runs; nothing has to be asked of the compiler. An integrand or a light of one's own goes wide in the same
-//! way if nothing but arithmetic and these functions is in it.
+//! [`ln`], [`exp`], [`floor`] and [`sin_cos_of_turns`] are the mathematical functions that sampling needs,
+//! accurate to 2 units in the last place and without branches or calls, so that a loop over them is
+//! vectorised. The crate's loops are compiled for several instruction sets, and the best one is chosen at run
+//! time; no compiler flags are needed. Your own integrand or light is vectorised, too, if it contains only
+//! arithmetic and these functions.
 //!
 //! # The same bits
-//! A sum or a product is rounded alike in every instruction set, and none is fused unless the source says so.
-//! So these functions and everything that is drawn with them have the same bits on every machine with IEEE
-//! 754 arithmetic, which `std`'s `ln`, `exp` and `sin` do not promise.
+//! Sums and products are rounded alike in every instruction set, and they are not fused unless the source
+//! says so. So these functions, and all draws made with them, have the same bits on every machine with IEEE
+//! 754 arithmetic, which `std`'s `ln`, `exp` and `sin` do not guarantee.
 
 use pulp::{Arch, NullaryFnOnce};
 
@@ -26,10 +26,10 @@ pub use ln::ln;
 pub(crate) use real::Real;
 pub use turns::sin_cos_of_turns;
 
-/// Runs a loop, compiled for the widest vectors that this processor has.
+/// Runs a loop compiled for the widest vectors of this processor.
 ///
-/// `kernel`'s `call` has to be `#[inline(always)]`, and what it calls inlined into it, or it stays as narrow
-/// as the rest of the crate.
+/// `kernel`'s `call` must be `#[inline(always)]` with everything that it calls inlined, or it is compiled for
+/// the crate's default vectors.
 #[inline]
 pub(crate) fn widest<K: NullaryFnOnce>(kernel: K) -> K::Output {
     #[cfg(test)]
@@ -52,7 +52,7 @@ impl NullaryFnOnce for AllFinite<'_> {
 
     #[inline(always)]
     fn call(self) -> bool {
-        // without a way out before the end, which would keep the loop narrow
+        // no early exit, which would prevent vectorisation
         self.0.iter().fold(true, |finite, number| finite & number.is_finite())
     }
 }
@@ -69,11 +69,11 @@ pub(crate) mod tests {
     use crate::{Estimate, Estimator, Stream};
 
     thread_local! {
-        /// Whether this thread runs its loops without vectors wider than all processors have.
+        /// Whether this thread runs its loops with the default vectors only.
         pub(crate) static NARROW: Cell<bool> = const { Cell::new(false) };
     }
 
-    /// The same computation with the processor's widest vectors, and without.
+    /// The results of a computation with the processor's widest vectors, and without.
     pub(crate) fn both<T>(compute: impl Fn() -> T) -> [T; 2] {
         let wide = compute();
         NARROW.set(true);
@@ -82,8 +82,7 @@ pub(crate) mod tests {
         [wide, narrow]
     }
 
-    /// The same bits with vectors and without, for every estimator that is filled many at a time, and for
-    /// their sums.
+    /// For every estimator that computes many draws at a time, and for their sums.
     #[test]
     fn wide_and_narrow_loops_have_the_same_bits() {
         let square = Rectangle::WORKSHEET;

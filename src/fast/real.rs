@@ -1,4 +1,4 @@
-//! What a loop that is written once needs of `f64` and of `f32`.
+//! The operations of `f64` and `f32` that generic loops need.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -14,10 +14,10 @@ pub(crate) trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// Uniform numbers have this step: 2⁻⁵³ or 2⁻²⁴.
+    /// Uniform numbers are multiples of this: 2⁻⁵³ or 2⁻²⁴.
     const STEP: Self;
 
-    /// The least component of a direction: the product of three of them has an inverse.
+    /// The smallest component of a direction: the reciprocal of the product of three does not overflow.
     const FLAT: Self;
 
     /// The nearest number.
@@ -33,7 +33,7 @@ pub(crate) trait Real:
 
     fn sin_cos_of_turns(self) -> (Self, Self);
 
-    /// The uniform number of a random word, and a word that has it.
+    /// The uniform number made from a random word, and a word for a uniform number.
     fn of_word(word: u64) -> Self;
     fn word(self) -> u64;
 
@@ -122,8 +122,8 @@ impl Real for f32 {
         f32::ceil(self)
     }
 
-    /// The series of [`sin_cos_of_turns`](super::sin_cos_of_turns) with four terms each: the first one left
-    /// out is below 2⁻²⁴.
+    /// The series of [`sin_cos_of_turns`](super::sin_cos_of_turns) with four terms each: the first omitted
+    /// one is below 2⁻²⁴.
     #[inline(always)]
     fn sin_cos_of_turns(self) -> (Self, Self) {
         const MAGIC: f32 = 12_582_912.0; // 1.5·2²³
@@ -157,10 +157,10 @@ mod tests {
 
     use crate::stream::Stream;
 
-    /// Against f64's, at every 256th number that there is and at all near the eighths of a turn, where sine
-    /// and cosine change places. With |t| ≤ π/4: t is rounded three times and 2π once, 2⁻²² of t or less in
-    /// all; the first terms left out are 2.4e-8 or less; a result takes three more roundings of at most 2⁻²⁵
-    /// each: below 3.5e-7.
+    /// Compares with f64 at every 256th uniform number, and at all near multiples of an eighth of a turn,
+    /// where sine and cosine are swapped. With |t| ≤ π/4: t is rounded three times and 2π once, 2⁻²² of t or
+    /// less in all; the first omitted terms are 2.4e-8 or less; a result has three more roundings of at most
+    /// 2⁻²⁵ each: below 3.5e-7.
     #[test]
     fn single_sines_of_turns_are_the_double_ones() {
         let near_eighths =
@@ -185,7 +185,7 @@ mod tests {
                 assert!(**u >= T::of(0.0) && **u < T::of(1.0) && steps == steps.floor());
                 steps % 2.0 == 1.0
             });
-            // half of them use the last bit: 500 ± 16 of 1000, and 8 of these is 128
+            // half of them use the last bit: 500 ± 16 of 1000; 8 std deviations are 128
             assert!((372..=628).contains(&odd.count()));
         }
         on_the_grid::<f64>();

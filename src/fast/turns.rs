@@ -1,10 +1,10 @@
-//! Sine and cosine of a fraction of a turn.
+//! Sine and cosine of an angle given in turns.
 
 use std::f64::consts::TAU;
 
 /// sin 2πv and cos 2πv for v in \[0, 1\], to 2 ulp and exact at quarter turns.
 ///
-/// The angle is reduced to at most an eighth of a turn without rounding, and the two are computed by Taylor's
+/// The angle is reduced to at most an eighth of a turn without rounding; then both are computed by Taylor
 /// series.
 ///
 /// ```
@@ -16,23 +16,23 @@ use std::f64::consts::TAU;
 /// ```
 #[inline(always)]
 pub fn sin_cos_of_turns(v: f64) -> (f64, f64) {
-    /// 1.5·2⁵²: what is added to it is rounded to an integer, which stands in its lowest bits.
+    /// 1.5·2⁵²: adding x to it rounds x to an integer, which is then in the lowest bits.
     const MAGIC: f64 = 6_755_399_441_055_744.0;
-    // the nearest quarter turn, and the exact rest of at most an eighth
+    // the nearest quarter turn, and the exact remainder of at most an eighth
     let rounded = 4.0 * v + MAGIC;
     let quarters = rounded.to_bits();
     let t = TAU * (v - 0.25 * (rounded - MAGIC));
-    // Taylor's series: on |t| ≤ π/4 the first term left out is below 2⁻⁵⁸
+    // Taylor series: on |t| ≤ π/4 the first omitted term is below 2⁻⁵⁸
     let t2 = t * t;
     let sin = t + t * t2 * series(t2, SIN);
     let cos = 1.0 + t2 * series(t2, COS);
-    // selections by bits rather than branches, which would be mispredicted every other time
+    // select by bits: a branch would be mispredicted half the time
     let (sin, cos) = if quarters & 1 == 0 { (sin, cos) } else { (cos, sin) };
     let sign = |negative: u64, x: f64| f64::from_bits(x.to_bits() ^ ((negative & 2) << 62));
     (sign(quarters, sin), sign(quarters.wrapping_add(1), cos))
 }
 
-/// ∓1/n! for n = 3, 5, …, 17: what stands beside t² in sin t = t + t·t²·(…).
+/// ∓1/n! for n = 3, 5, …, 17: the coefficients of (…) in sin t = t + t·t²·(…).
 const SIN: [f64; 8] = [
     -1.0 / 6.0,
     1.0 / 120.0,
@@ -56,7 +56,7 @@ const COS: [f64; 8] = [
     1.0 / 20_922_789_888_000.0,
 ];
 
-/// Σ cₙ zⁿ in pairs, and pairs of pairs (Estrin 1960): half as many steps that wait for each other.
+/// Σ cₙ zⁿ in pairs, and pairs of pairs (Estrin 1960), which halves the dependency chain.
 #[inline(always)]
 fn series(z: f64, c: [f64; 8]) -> f64 {
     let (w, pair) = (z * z, |n: usize| c[n] + z * c[n + 1]);

@@ -1,8 +1,8 @@
-//! Where labels go in a drawing: beside their points, off the lines and off each other.
+//! Placing labels in a drawing: beside their points, without covering lines or each other.
 
 use super::panel::{Ink, Panel, Side};
 
-/// A rectangle around a middle, in the drawing's units.
+/// A rectangle given by its centre, in the drawing's units.
 #[derive(Debug, Clone, Copy)]
 struct Box2 {
     middle: [f64; 2],
@@ -10,7 +10,7 @@ struct Box2 {
 }
 
 impl Box2 {
-    /// How much of two rectangles overlaps.
+    /// The area of the overlap of two rectangles.
     fn overlap(&self, other: &Self) -> f64 {
         let along = |axis: usize| {
             let (Some(a), Some(b)) = (self.side(axis), other.side(axis)) else { return 0.0 };
@@ -52,7 +52,7 @@ fn cross([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
     turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) <= 0.0
 }
 
-/// About how many points wide a text is: at 8 points a letter is about 5.2 wide, a raised or lowered one
+/// The approximate width of a text in points: at 8 points a letter is about 5.2 wide, a super- or subscript
 /// about 3.4.
 pub(super) fn width(text: &str) -> f64 {
     let of = |c: char| {
@@ -78,9 +78,9 @@ const RINGS: u8 = 12;
 /// What each costs: all of them less than a line that is crossed.
 const FAR: f64 = 0.08;
 
-/// Labels of one drawing, placed one after the other where they are least in the way.
+/// Labels of one drawing, each placed where it covers the least.
 pub(crate) struct Labels {
-    /// how many points of print a unit is
+    /// points of print per unit
     scale: f64,
     bounds: Box2,
     lines: Vec<[[f64; 2]; 2]>,
@@ -106,7 +106,7 @@ impl Labels {
         self.taken.push(Box2 { middle, half: size.map(|size| 0.5 * size / self.scale) });
     }
 
-    /// Puts a text beside `at`.
+    /// Places a text beside `at`.
     pub fn place(&mut self, panel: &mut Panel, ink: Ink, at: [f64; 2], text: &str) {
         if let Some(middle) = self.beside(&[at], text) {
             panel.text(ink, middle, Side::Centre, text);
@@ -147,8 +147,8 @@ impl Labels {
         Some(label.middle)
     }
 
-    /// How much the labels placed so far are in the way: the lines that they cross, and what they cover of
-    /// each other. 0, but for rounding, is a drawing that reads well.
+    /// How bad the placement is so far: the lines that labels cross, and how much they cover of each other.
+    /// 0, up to rounding, if nothing is covered.
     pub fn in_the_way(&self) -> f64 {
         self.in_the_way
     }

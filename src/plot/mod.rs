@@ -1,9 +1,8 @@
-//! A figure for each thing worth looking at, as SVG with its numbers as CSV beside it.
+//! Figures as SVG, with their numbers as CSV.
 //!
-//! Every figure has a title and a description for readers who cannot see it, is 85 or 170 mm wide, reads in
-//! grey, and is the same bytes on every run. Where a question asks the student to mark or draw something
-//! there are two editions: [`Edition::Student`] has the same canvas and axes with nothing of the answer on
-//! it.
+//! Every figure has a title and a description for readers who cannot see it, is 85 or 170 mm wide, can be
+//! read in grey, and has the same bytes on every run. If a question asks the student to mark or draw
+//! something there are two editions: [`Edition::Student`] has the same canvas and axes without the answer.
 
 mod labels;
 mod panel;
@@ -23,7 +22,7 @@ use crate::error::{Error, Result};
 /// For whom a figure or page is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Edition {
-    /// To be filled in: the same canvas, with no trace of an answer.
+    /// For students to fill in: the same canvas without the answer.
     Student,
     /// With the answer.
     Solution,
@@ -41,17 +40,17 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// The file name without its ending: the question's number and a word, and `_student` in that edition.
+    /// The file name without extension: the question's number and a word, and `_student` in that edition.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What the figure shows, in a line.
+    /// The title: what the figure shows, in one line.
     pub fn title(&self) -> &str {
         &self.title
     }
 
-    /// What there is to see, in some sentences for readers who cannot see it.
+    /// The description for readers who cannot see it.
     pub(crate) fn description(&self) -> &str {
         &self.description
     }
@@ -66,7 +65,7 @@ impl Figure {
         &self.svg
     }
 
-    /// The numbers drawn, to six significant digits, a row per point: `panel,series,x,y,low,high`.
+    /// The numbers drawn, to six significant digits, one row per point: `panel,series,x,y,low,high`.
     pub fn csv(&self) -> &str {
         &self.csv
     }
@@ -77,8 +76,9 @@ impl Figure {
         Self { svg: slide::svg(self, &name), csv: String::new(), name, ..self.clone() }
     }
 
-    /// Writes `name.svg` and `name.csv` into `folder`, which is made if need be (with the features `png` and
-    /// `pdf` those formats, too). Each file appears whole or not at all. Returns the paths, the SVG's first.
+    /// Writes `name.svg` and `name.csv` into `folder`, which is created if necessary (with the features `png`
+    /// and `pdf` those formats, too). Each file is written completely or not at all. Returns the paths, the
+    /// SVG's first.
     ///
     /// # Errors
     /// If the folder or a file cannot be written.
@@ -99,7 +99,7 @@ impl Figure {
             .collect()
     }
 
-    /// The picture as PNG, with this many dots to the inch, on white.
+    /// The picture as PNG, at this many dots per inch, on white.
     ///
     /// # Errors
     /// If the picture cannot be drawn at this size.
@@ -120,7 +120,7 @@ impl Figure {
         pixels.encode_png().map_err(|error| failed(error.to_string()))
     }
 
-    /// The picture as a PDF page of its own size. Its bytes may differ between runs, what it shows does not.
+    /// The picture as a PDF page of the same size. Its bytes may differ between runs, its content does not.
     ///
     /// # Errors
     /// If the picture cannot be converted.
@@ -136,7 +136,7 @@ impl Figure {
     }
 }
 
-/// The fonts that the SVG was laid out with, so that no system font is needed.
+/// Provides the fonts used for the SVG's layout, so that no system font is needed.
 #[cfg(any(feature = "png", feature = "pdf"))]
 fn provide_fonts(fonts: &mut usvg_fonts::Database) {
     fonts.load_font_data(dejavu::sans::regular().to_vec());
@@ -149,33 +149,33 @@ use resvg::usvg::fontdb as usvg_fonts;
 #[cfg(feature = "pdf")]
 use svg2pdf::usvg::fontdb as usvg_fonts;
 
-/// Writes a file so that it appears whole or not at all, and its folder if need be. Of several who write the
-/// same file at once, in this process or another, each writes a whole one, and the last one's stays.
+/// Writes a file completely or not at all, and creates its folder if necessary. If several threads or
+/// processes write the same file at once, the last complete one stays.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     let failed =
         |error: std::io::Error| Error::Write { path: path.display().to_string(), reason: error.to_string() };
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(failed)?;
     }
-    // a name that nobody else writes to
+    // a temporary name that no other writer uses
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let mut part = path.as_os_str().to_owned();
     part.push(format!(".{}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
     fs::write(&part, bytes).and_then(|()| fs::rename(&part, path)).map_err(|error| {
-        // whatever was begun goes away again; if even that fails, the first error is the one to tell
+        // remove the temporary file; if that fails, too, report the first error
         let _ = fs::remove_file(&part);
         failed(error)
     })
 }
 
-/// Six significant digits, so that the last digits of a machine's ln and sin cannot be seen.
+/// Six significant digits, so that different last digits of ln and sin on other machines do not show.
 fn six_digits(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return format!("{x}");
     }
     let size = x.abs().log10();
     if (-4.0..15.0).contains(&size) {
-        // by way of {:e}, which rounds to significant digits
+        // `{:e}` rounds to significant digits
         let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
         format!("{rounded}")
     } else {
@@ -213,7 +213,7 @@ mod tests {
         let path = folder.join("deep").join("file.txt");
         write_whole(&path, b"whole").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"whole");
-        // a folder in the file's place
+        // a folder where the file should be
         let taken = folder.join("taken");
         fs::create_dir_all(taken.join("inside")).unwrap();
         assert!(matches!(write_whole(&taken, b"x"), Err(Error::Write { .. })));

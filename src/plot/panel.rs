@@ -1,4 +1,4 @@
-//! What a figure shows, before it is drawn: panels with axes, and things on them in the data's own units.
+//! The content of a figure before it is drawn: panels with axes, and items on them in data coordinates.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ use crate::numbers::{in_steps, power_of_ten, typeset};
 pub(crate) enum Width {
     /// One column, 85 mm.
     Column,
-    /// A drawing to draw into, 150 mm.
+    /// A drawing for the student to draw into, 150 mm.
     Drawing,
     /// The page, 170 mm.
     Page,
@@ -27,7 +27,7 @@ impl Width {
     }
 }
 
-/// A colour with the dash that tells it apart in grey (Okabe & Ito 2008).
+/// A colour with a dash pattern that distinguishes it in grey (Okabe & Ito 2008).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Ink {
     /// Blue, solid.
@@ -40,7 +40,7 @@ pub(crate) enum Ink {
     Purple,
     /// The truth: thin, black, solid.
     Black,
-    /// What is only there for orientation: thin, grey, solid.
+    /// Lines for orientation: thin, grey, solid.
     Grey,
 }
 
@@ -69,20 +69,20 @@ impl Marker {
     }
 }
 
-/// On which side of its point a text stands.
+/// On which side of its point a text is placed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Side {
     Left,
     Right,
     Above,
-    /// Above the point, beginning there.
+    /// Above and to the right of the point.
     UpperRight,
-    /// Below the point, beginning there.
+    /// Below and to the right of the point.
     LowerRight,
     Centre,
 }
 
-/// One thing on a panel. Coordinates are data; what leaves the axes is clipped.
+/// An item on a panel, in data coordinates, clipped to the axes.
 #[derive(Debug, Clone)]
 pub(crate) enum Item {
     Line {
@@ -116,7 +116,7 @@ pub(crate) enum Item {
         width: f64,
         points: Vec<[f64; 2]>,
     },
-    /// a marker that says to which points the text beside it belongs
+    /// a legend's marker, for a text beside it
     Key {
         ink: Ink,
         marker: Marker,
@@ -153,13 +153,13 @@ pub(crate) struct Axis {
     pub low: f64,
     pub high: f64,
     pub logarithmic: bool,
-    /// where the ticks are, and what they say
+    /// the ticks' places and labels
     pub ticks: Vec<(f64, String)>,
 }
 
 impl Axis {
-    /// From `low` to `high`, with about six round ticks. Where their digits would not tell, the name holds a
-    /// power of ten, of which they are multiples.
+    /// From `low` to `high`, with about six round ticks. For very small or large numbers the ticks are
+    /// multiples of a power of ten that is given in the name.
     pub fn linear(name: &str, low: f64, high: f64) -> Self {
         let size = low.abs().max(high.abs());
         let power = if (0.01..1e4).contains(&size) || !size.is_normal() { 0.0 } else { size.log10().floor() };
@@ -167,7 +167,7 @@ impl Axis {
         let steps = if step.is_normal() && size / step < 1e14 {
             (low / step - 1e-9).ceil() as i64..=(high / step + 1e-9).floor() as i64
         } else {
-            // what cannot be drawn is said of the whole figure
+            // `Plot::draw` reports an axis that cannot be drawn
             std::ops::RangeInclusive::new(1, 0)
         };
         let ticks = steps.map(|i| (i as f64 * step, in_steps(i as f64 * step / unit, step / unit))).collect();
@@ -175,11 +175,11 @@ impl Axis {
         Self { name, low, high, logarithmic: false, ticks }
     }
 
-    /// From `low` to `high` > 0, logarithmic, with ticks at powers of ten, or between them where there are
-    /// few.
+    /// From `low` to `high` > 0, logarithmic, with ticks at powers of ten, or at 1, 2 and 5 times them if
+    /// there would be fewer than two.
     pub fn log(name: &str, low: f64, high: f64) -> Self {
         let (from, to) = (low.log10() - 1e-9, high.log10() + 1e-9);
-        // what cannot be drawn is said of the whole figure
+        // `Plot::draw` reports an axis that cannot be drawn
         let (first, last) =
             if (to - from).is_finite() { (from.ceil() as i32, to.floor() as i32) } else { (1, 0) };
         let every = ((last - first) / 6).max(1);
@@ -193,7 +193,7 @@ impl Axis {
         Self { name: name.into(), low, high, logarithmic: true, ticks }
     }
 
-    /// Whether numbers of this size can be told apart, and drawn.
+    /// Whether the axis can be drawn: its ends are distinguishable and neither too small nor too large.
     pub fn can_be_drawn(&self) -> bool {
         let sizes = 1e-300..1e300;
         let whole = self.low.is_finite() && self.high.is_finite() && self.low < self.high;
@@ -202,8 +202,8 @@ impl Axis {
         whole && apart && sizes.contains(&from) && sizes.contains(&self.high.abs().max(self.low.abs()))
     }
 
-    /// The ticks on an axis of this length whose labels, each of this size, do not touch: all of them, or
-    /// every second, and so on, counted from 0 if it is one of them.
+    /// The ticks whose labels, of these sizes, do not touch on an axis of this length: all of them, or every
+    /// second, and so on, always including 0 if that is one of them.
     pub fn legible(&self, length: f64, size: impl Fn(&str) -> f64) -> Vec<(f64, &str)> {
         let visible: Vec<(f64, &str)> = self
             .ticks
@@ -221,7 +221,7 @@ impl Axis {
         kept((1..=visible.len()).find(free).unwrap_or(1)).collect()
     }
 
-    /// The value at a place between 0, the low end, and 1.
+    /// The value at a place from 0, the low end, to 1, the high end.
     pub fn value(&self, place: f64) -> f64 {
         if self.logarithmic {
             self.low * (self.high / self.low).powf(place)
@@ -230,13 +230,13 @@ impl Axis {
         }
     }
 
-    /// With these ticks instead.
+    /// Replaces the ticks.
     pub fn with_ticks<S: Into<String>>(mut self, ticks: impl IntoIterator<Item = (f64, S)>) -> Self {
         self.ticks = ticks.into_iter().map(|(at, label)| (at, label.into())).collect();
         self
     }
 
-    /// Where a value stands on the axis, 0 at the low end and 1 at the high one.
+    /// The place of a value on the axis: 0 at the low end and 1 at the high end.
     pub fn place(&self, value: f64) -> f64 {
         if self.logarithmic {
             (value.ln() - self.low.ln()) / (self.high.ln() - self.low.ln())
@@ -246,7 +246,7 @@ impl Axis {
     }
 }
 
-/// The largest of 1, 2, 5 · 10^k that is not above `rough` by more than a half.
+/// The number of the form 1, 2 or 5 · 10^k that is nearest to `rough`.
 fn round_step(rough: f64) -> f64 {
     let power = 10f64.powf(rough.log10().floor());
     let factor = match rough / power {
@@ -258,7 +258,7 @@ fn round_step(rough: f64) -> f64 {
     factor * power
 }
 
-/// An axis's name with this factor of its unit.
+/// Adds a factor to the unit in an axis's name.
 fn in_units(name: &str, factor: &str) -> String {
     if let Some(name) = name.strip_suffix(" (dimensionless)") {
         format!("{name} ({factor})")
@@ -269,7 +269,7 @@ fn in_units(name: &str, factor: &str) -> String {
     }
 }
 
-/// One pair of axes with what is drawn on them.
+/// A pair of axes with the items on them.
 #[derive(Debug, Clone)]
 pub(crate) struct Panel {
     pub heading: String,
@@ -292,7 +292,7 @@ impl Panel {
         self.add(Item::Line { series: series.into(), ink, points })
     }
 
-    /// The curve y = f(x) over the whole axis, in 241 points evenly apart on it.
+    /// The curve y = f(x) over the whole axis, through 241 evenly spaced points.
     pub fn curve(&mut self, series: &str, ink: Ink, f: impl Fn(f64) -> f64) -> &mut Self {
         let (low, high) = (self.x.low, self.x.high);
         self.curve_between(series, ink, low, high, f)
@@ -424,18 +424,18 @@ impl Panel {
         along
     }
 
-    /// A text beside the point at these parts of the axes, whatever their numbers.
+    /// A text beside the point at these fractions of the axes.
     pub fn note(&mut self, ink: Ink, [across, up]: [f64; 2], side: Side, text: &str) -> &mut Self {
         let at = self.spot(across, up);
         self.text(ink, at, side, text)
     }
 
-    /// A marker that says to which points a text beside it belongs.
+    /// A legend's marker, for a text beside it.
     pub fn key(&mut self, ink: Ink, marker: Marker, at: [f64; 2]) -> &mut Self {
         self.add(Item::Key { ink, marker, at })
     }
 
-    /// The point at these parts of the axes, whatever their numbers.
+    /// The point at these fractions of the axes.
     pub fn spot(&self, across: f64, up: f64) -> [f64; 2] {
         [self.x.value(across), self.y.value(up)]
     }
@@ -451,9 +451,9 @@ impl Panel {
 pub(crate) struct Plot {
     /// The question's number and a word: the same in both editions.
     pub name: &'static str,
-    /// What it shows, in a line. The student's must not tell the answer.
+    /// What it shows, in one line. The student edition's must not tell the answer.
     pub title: String,
-    /// What a reader who cannot see it should know.
+    /// The description for readers who cannot see it.
     pub description: String,
     pub edition: Edition,
     pub width: Width,
@@ -495,9 +495,9 @@ impl Plot {
         Ok(Figure { svg, csv: self.csv(), title, description, edition: self.edition, name })
     }
 
-    /// All points drawn, a row each; the columns low and high are those of bands and error bars. What is no
-    /// number has no row, nor have, for the student, curves in colour: what is to be found on them would be
-    /// among the numbers.
+    /// All points drawn, one row each; the columns low and high are for bands and error bars. Points that are
+    /// NaN are left out. So are coloured curves in the student edition, since their numbers would tell the
+    /// answer.
     fn csv(&self) -> String {
         let mut csv = String::from("panel,series,x,y,low,high\n");
         for panel in &self.panels {

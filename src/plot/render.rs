@@ -1,5 +1,5 @@
-//! Drawing a [`Plot`] with plotters, on a lattice ten times finer than shown: its coordinates are integers,
-//! and at one pixel a unit curves would be staircases.
+//! Draws a [`Plot`] with plotters. Its coordinates are integers, so units are a tenth of a pixel; otherwise
+//! curves would look like staircases.
 
 use std::sync::Once;
 
@@ -12,22 +12,22 @@ use super::labels::{LINE, Labels, size, width};
 use super::panel::{Ink, Item, Marker, Panel, Plot, Side};
 use crate::error::{Error, Result};
 
-/// Lattice units in a millimetre: ten for each CSS pixel of 1/96 inch.
+/// Units per millimetre: ten per CSS pixel of 1/96 inch.
 const MM: f64 = 960.0 / 25.4;
-/// Lattice units in a typographic point.
+/// Units per typographic point.
 const PT: f64 = 960.0 / 72.0;
 
 const INK: RGBColor = RGBColor(0x22, 0x22, 0x22);
 const GREY: RGBColor = RGBColor(0x88, 0x88, 0x88);
 const FAINT: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
 
-/// plotters has no dashes: a line's opacity, one of these, says which it gets once the SVG is written.
+/// plotters has no dashes: lines get one of these opacities, which `finish` replaces by the dash pattern.
 const DASHES: [(f64, &str); 3] = [(0.991, "75 30"), (0.992, "90 30 15 30"), (0.993, "15 25")];
 
-/// Fonts with every sign that is drawn, in the order in which they are looked for.
+/// Fonts that have all characters used, in order of preference.
 const FONTS: &str = "font-family=\"DejaVu Sans, Noto Sans, Noto Sans Math, STIX Two Math, sans-serif\"";
 
-/// A text's white edge.
+/// The white outline of texts.
 const EDGE: &str = " stroke=\"#FFFFFF\" stroke-width=\"24\" paint-order=\"stroke\"";
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -40,11 +40,11 @@ pub(super) fn svg(plot: &Plot, name: &str) -> Result<String> {
     Ok(finish(plot, name, &svg))
 }
 
-/// Even for SVG plotters asks a font for its metrics; this one has every Greek letter and sign needed.
+/// plotters needs a font's metrics even for SVG; this one has all Greek letters and symbols needed.
 fn register_fonts() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
-        // a font that does not parse shows as an error of the first text drawn
+        // if a font cannot be parsed, the first text drawn gives an error
         let _ = register_font("sans-serif", FontStyle::Normal, dejavu::sans::regular());
         let _ = register_font("sans-serif", FontStyle::Bold, dejavu::sans::bold());
     });
@@ -62,7 +62,7 @@ fn draw(plot: &Plot, svg: &mut String, size: (u32, u32)) -> Result<(), String> {
 
 type Drawn = std::result::Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-/// Where the axes of a panel lie on the lattice.
+/// Where the axes of a panel are, in units.
 struct Frame<'p> {
     panel: &'p Panel,
     left: f64,
@@ -91,7 +91,7 @@ impl Frame<'_> {
         near(self.panel.x.place(x)) && near(self.panel.y.place(y))
     }
 
-    /// The runs of a curve that lie inside the axes, on the lattice.
+    /// The parts of a curve inside the axes, in units.
     fn clip(&self, points: &[[f64; 2]]) -> Vec<Vec<(i32, i32)>> {
         let (x_axis, y_axis) = (&self.panel.x, &self.panel.y);
         let placed = points.iter().map(|&[x, y]| [x_axis.place(x), y_axis.place(y)]).collect::<Vec<_>>();
@@ -145,7 +145,7 @@ fn clip_segment(from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
 fn draw_panel(panel: &Panel, area: &Area<'_>) -> Drawn {
     let (across, down) = area.dim_in_pixel();
     let widest = panel.y.ticks.iter().map(|(_, label)| label.chars().count()).max().unwrap_or(0) as f64;
-    // a few characters may all be wide ones, many are not
+    // a few characters may all be wide, many are not
     let beside = if panel.bare { 2.0 } else { 20.0 + 5.4 * widest.min(8.0) + 4.4 * (widest - 8.0).max(0.0) };
     let frame = Frame {
         panel,
@@ -404,7 +404,7 @@ fn colour(ink: Ink) -> RGBColor {
     }
 }
 
-/// The colour for text, dark enough to read on white.
+/// The colour for text, dark enough to be read on white.
 fn dark(ink: Ink) -> RGBColor {
     let RGBColor(r, g, b) = colour(ink);
     let darker = |c: u8| (f64::from(c) * 0.75) as u8;
@@ -438,7 +438,8 @@ fn bold(points: f64, colour: &RGBColor) -> TextStyle<'static> {
         .pos(Pos::new(HPos::Left, VPos::Top))
 }
 
-/// Gives the drawing dashes, and text a white edge that keeps lines off it, in a document of its own.
+/// Adds the size in mm, title, description and dash patterns, and a white outline around texts so that lines
+/// do not touch them.
 fn finish(plot: &Plot, name: &str, svg: &str) -> String {
     let size = [plot.width.millimetres(), plot.height_mm];
     let body = svg.split_once('>').map_or("", |(_, body)| body);

@@ -1,10 +1,10 @@
 //! Running an estimator: draws in blocks, on all cores, with the same bits for any number of threads.
 //!
-//! A run of n draws is cut into blocks: 32 to 63 of them, or more where they would be larger than 2¹⁴ draws.
+//! A run of n draws is cut into blocks: 32 to 63 of them, or more where blocks would have over 2¹⁴ draws.
 //! Block b draws from [`Stream::new`]`(seed, b)` and the blocks' estimates are merged along a fixed binary
-//! tree over b, so neither the number of threads nor their timing can be seen in the result, nor whether it
-//! was made in one piece or put together from [shards](Run::shard) of several machines. Memory does not grow
-//! with the number of draws.
+//! tree over b. So the result does not depend on the number of threads or their timing, nor on whether the
+//! run is done at once or in [shards](Run::shard) on several machines. Memory does not grow with the number
+//! of draws.
 
 use std::fmt;
 use std::ops::Range;
@@ -24,31 +24,28 @@ mod part;
 use part::Blocks;
 pub use part::{Part, merge};
 
-/// When a run is over.
+/// When a run ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Budget {
     /// After this many draws.
     Draws(u64),
-    /// After the draws that, by a pilot run's variance, bring the std error to this, but never fewer than the
-    /// pilot's: some 10⁶, or as many as take 2²⁴ random numbers or evaluations. The pilot has a stream of its
-    /// own and is discarded, so the result stays exactly unbiased.
+    /// After as many draws as, by a pilot run's variance, make the std error this small, but never fewer than
+    /// the pilot's: about 10⁶, or as many as take 2²⁴ random numbers or evaluations. The pilot uses its own
+    /// streams and is discarded, so the result is exactly unbiased.
     StdError(f64),
     /// The same for the std error divided by the mean.
     RelativeError(f64),
-    /// After the draws that this time has room for, by the pace of a pilot run that takes a tenth of it, but
-    /// never fewer than two. To stop by the clock itself would favour draws that are soon made, and their
-    /// values with them (Glynn & Heidelberger 1990). The number of draws depends on the machine; `Draws` with
-    /// that number repeats the result.
+    /// After as many draws as fit into this time, by the speed of a pilot run that takes a tenth of it, but
+    /// at least two. (Stopping by the clock itself would favour draws that are quick to compute, and bias the
+    /// mean: Glynn & Heidelberger 1990.) The number of draws depends on the machine; `Draws` with that number
+    /// repeats the result.
     Time(Duration),
 }
 
-/// The estimate after `budget`, on all cores. The same budget of draws and seed give the same bits for any
-/// number of threads.
+/// Runs an estimator until `budget` is spent, on all cores. The same number of draws and the same seed give
+/// the same bits for any number of threads.
 ///
-/// [`Run`] takes more options and tells more.
-///
-/// # Errors
-/// If the budget is empty or out of reach, or a draw is NaN or infinite.
+/// [`Run`] has more options and returns more.
 ///
 /// ```
 /// use unbiased::{Budget, estimate, inversion::Exponential};
@@ -58,45 +55,48 @@ pub enum Budget {
 /// assert!(estimate.z(1.0 / 0.37).unwrap().abs() < 5.0);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
+///
+/// # Errors
+/// If the budget is empty or out of reach, or a draw is NaN or infinite.
 pub fn estimate(estimator: &(impl Estimator + ?Sized), budget: Budget, seed: u64) -> Result<Estimate> {
     Ok(Run::new(seed).estimate(estimator, budget)?.estimate)
 }
 
-/// What a run took, in units that do not depend on the machine.
+/// The work of a run, in units that do not depend on the machine.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Cost {
-    /// Random numbers (words of 64 bits) that the streams gave.
+    /// Random numbers (64-bit words) taken.
     pub random_numbers: u64,
     /// Evaluations of the integrand (rays, path vertices) that the estimator counted.
     pub evaluations: u64,
 }
 
-/// What came of a run.
+/// The result of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
     /// The estimate.
     pub estimate: Estimate,
     /// The seed it was made with.
     pub seed: u64,
-    /// What it cost, the pilot included.
+    /// The work, including the pilot's.
     pub cost: Cost,
-    /// How long it took, the pilot included.
+    /// How long it took, including the pilot.
     pub elapsed: Duration,
-    /// The pilot run that fixed the number of draws, if the budget asked for an error.
+    /// The pilot run that determined the number of draws, if the budget is an error.
     pub pilot: Option<Estimate>,
-    /// By how much it falls short of the error asked for, where [`Run::max_time`] cut it short.
+    /// What was missing for the error asked for, if [`Run::max_time`] ended the run earlier.
     pub shortfall: Option<Shortfall>,
-    /// If the run was a [shard](Run::shard): what makes the whole run, with the others.
+    /// If the run was a [shard](Run::shard): the part to be merged with the others.
     pub part: Option<Part>,
 }
 
-/// What an error would have taken that a run had no time for. It displays as a clause:
-/// "a std error of 6e-4 takes about 1.2e9 draws".
+/// The draws that the error asked for would have needed. It displays as a clause: "a std error of 6e-4 takes
+/// about 1.2e9 draws".
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shortfall {
     /// The std error asked for.
     pub std_error: f64,
-    /// The draws that it would take, by the pilot run's variance.
+    /// The draws needed for it, from the pilot run's variance.
     pub draws: f64,
 }
 
@@ -107,17 +107,17 @@ impl fmt::Display for Shortfall {
 }
 
 impl Outcome {
-    /// Whether the pilot run never varied, so that there was nothing to fix the number of draws by: either
-    /// the estimator has no variance, or the pilot missed all of it. A value that a draw takes with
-    /// probability p is missed by n draws with probability (1 − p)ⁿ: below 1e-12 for p ≥ 27.6/n, which is
-    /// 1.7e-6 for the 2²⁴ draws after which a pilot of cheap draws gives up. The run then takes 2²⁰ draws, or
-    /// the pilot's where it had fewer.
+    /// Whether all draws of the pilot run were equal, so that the number of draws could not be determined
+    /// from it: either the estimator has no variance, or the pilot missed all of it. A value that a draw
+    /// takes with probability p is missed by n draws with probability (1 − p)ⁿ: below 1e-12 for p ≥ 27.6/n,
+    /// which is 1.7e-6 for the 2²⁴ draws after which a pilot of cheap draws stops. The run then takes 2²⁰
+    /// draws, or as many as the pilot if that had fewer.
     pub fn pilot_never_varied(&self) -> bool {
         self.pilot.is_some_and(|pilot| pilot.std_error() == Some(0.0))
     }
 }
 
-/// How far a run has come: draws done, and the total where it is known.
+/// A callback for progress: draws done, and the total if it is known.
 pub type Progress<'a> = dyn Fn(u64, Option<u64>) + 'a;
 
 /// A clock: the time since any fixed moment.
@@ -144,7 +144,7 @@ pub struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// A run with this seed, on all cores, of at most 10⁹ draws where the budget names an error.
+    /// A run with this seed, on all cores; with a budget of an error, at most 10⁹ draws.
     pub fn new(seed: u64) -> Self {
         Self {
             seed,
@@ -157,23 +157,23 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Uses this many threads instead of one a core; the result of the same draws is the same.
+    /// Uses this many threads instead of one per core; the result does not depend on it.
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = Some(threads);
         self
     }
 
-    /// Allows this many draws where the budget names an error.
+    /// Sets the largest number of draws for a budget of an error.
     pub fn max_draws(mut self, max_draws: u64) -> Self {
         self.max_draws = max_draws;
         self
     }
 
-    /// Where the budget names an error, takes no more draws than this time allows by the pilot run's pace,
-    /// though never fewer than the pilot, which itself doubles no more once a quarter of the time is over. An
-    /// error out of reach is then no [`Error::Budget`]: the estimate comes with a [`Shortfall`]. The number
-    /// of its draws depends on the machine, but not on their values, so it stays unbiased; `Budget::Draws`
-    /// with that number repeats it.
+    /// For a budget of an error, takes at most as many draws as fit into this time by the pilot run's speed,
+    /// but never fewer than the pilot, which stops growing after a quarter of the time. If the error cannot
+    /// be reached, there is no [`Error::Budget`] but an estimate with a [`Shortfall`]. The number of its
+    /// draws depends on the machine but not on their values, so it is unbiased; `Budget::Draws` with that
+    /// number repeats it.
     ///
     /// ```
     /// use std::time::Duration;
@@ -195,16 +195,15 @@ impl<'a> Run<'a> {
         self
     }
 
-    /// Reads the time from this clock. Without it a run reads the system's, where there is one: on
-    /// `wasm32-unknown-unknown` there is none, and a budget of time is an error.
+    /// Reads the time from this clock instead of the system's. On `wasm32-unknown-unknown` the system has
+    /// none, and without this a budget of time is an error.
     pub fn clock(mut self, clock: &'a Clock<'a>) -> Self {
         self.clock = Some(clock);
         self
     }
 
-    /// Takes only shard k of `of` of the run: of as many neighbouring blocks as the others. Its outcome has a
-    /// [`Part`]; [`merge`] makes the whole run's outcome of all parts, with the bits that it has in one
-    /// piece.
+    /// Takes only shard k of `of` of the run: an equal share of consecutive blocks. Its outcome has a
+    /// [`Part`]; [`merge`] of all parts gives the same bits as the whole run at once.
     pub fn shard(mut self, k: u64, of: u64) -> Self {
         self.shard = Some([k, of]);
         self
@@ -213,9 +212,9 @@ impl<'a> Run<'a> {
     /// Runs `estimator` until `budget` is spent.
     ///
     /// # Errors
-    /// If a shard is not one of 1 to the number of shards, or is asked for with a budget that is not one of
-    /// draws; if the budget is empty or out of reach, the threads cannot be started, a draw is NaN or
-    /// infinite, or a time is to be kept by a clock that stands still or goes back.
+    /// If a shard is not from 1 to the number of shards, or the budget of a shard is not a number of draws;
+    /// if the budget is empty or out of reach, the threads cannot be started, a draw is NaN or infinite, or
+    /// the budget is a time and the clock stands still or goes back.
     pub fn estimate(&self, estimator: &(impl Estimator + ?Sized), budget: Budget) -> Result<Outcome> {
         let watch = Watch::start(self.clock);
         if let Some([k, of]) = self.shard {
@@ -295,24 +294,23 @@ impl<'a> Run<'a> {
             work.extend(&mut blocks, self.seed, next..until, draws)?;
             next = until;
             self.report(blocks.draws(), draws);
-            // few enough for progress to be seen, and enough to keep all cores busy
-            if watch.elapsed().saturating_sub(start) < BETWEEN_LOOKS {
+            // short enough to report progress, long enough to keep all cores busy
+            if watch.elapsed().saturating_sub(start) < BATCH_TIME {
                 batch = (2 * batch).min(LARGEST_BATCH);
             }
         }
         Ok(blocks)
     }
 
-    /// How many draws `time` has room for, by the pace at which all threads draw from streams of their own
-    /// for a tenth of it. Those draws are discarded: what decides on the number says nothing of the values
-    /// that count.
+    /// How many draws fit into `time`, by the speed of all threads in a pilot run of a tenth of it. The
+    /// pilot's draws use other streams and are discarded, so the number is independent of the run's values.
     fn draws_in<E: Estimator + ?Sized>(
         &self,
         work: &mut Work<'_, E>,
         watch: &Watch<'_>,
         time: Duration,
     ) -> Result<u64> {
-        let (start, seed) = (watch.elapsed(), mix(self.seed ^ PILOT));
+        let (start, seed) = (watch.elapsed(), mix(self.seed ^ PILOT_SALT));
         let until = start + time.saturating_sub(start) / 10;
         let estimator = work.estimator;
         let pace = |thread: usize| pace(estimator, seed, thread as u64, watch, [start, until]);
@@ -332,8 +330,8 @@ impl<'a> Run<'a> {
         Ok(((draws_per_second * left) as u64).max(2))
     }
 
-    /// Draws from streams of their own until mean and std error are `enough`, doubling up to the limit on
-    /// draws; without any variance only up to [`STILL`].
+    /// The pilot run: doubles its draws, from streams of its own, until mean and std error are `enough` or
+    /// the limit on draws is reached; without any variance, until [`CONSTANT_WORK`].
     fn pilot<E: Estimator + ?Sized>(
         &self,
         work: &mut Work<'_, E>,
@@ -345,13 +343,13 @@ impl<'a> Run<'a> {
         for stage in 0.. {
             let draws = pilot.draws().max(FIRST_STAGE).min(self.max_draws.max(2) - pilot.draws());
             let mut more = Blocks::from(0);
-            let seed = mix(self.seed ^ PILOT.wrapping_add(stage));
+            let seed = mix(self.seed ^ PILOT_SALT.wrapping_add(stage));
             work.extend(&mut more, seed, 0..u64::MAX, draws)?;
             pilot.merge(&more.estimate());
             let work = pilot.draws().max(work.cost.work() / 16);
             let std_error = pilot.std_error().unwrap_or(0.0);
-            let long_enough = work >= LONG && enough(pilot.mean(), std_error);
-            let still = std_error == 0.0 && work >= STILL;
+            let long_enough = work >= PILOT_WORK && enough(pilot.mean(), std_error);
+            let still = std_error == 0.0 && work >= CONSTANT_WORK;
             if long_enough || still || late(0.25) || pilot.draws() >= self.max_draws.max(2) {
                 break;
             }
@@ -359,15 +357,14 @@ impl<'a> Run<'a> {
         Ok(pilot)
     }
 
-    /// The draws to take for a std error of `target`, by the pilot's variance, and what is missing where time
-    /// is short.
+    /// The draws to take for a std error of `target`, by the pilot's variance, and the shortfall if time is
+    /// short.
     fn needed(&self, pilot: &Estimate, watch: &Watch<'_>, target: f64) -> Result<(u64, Option<Shortfall>)> {
         let reached = pilot.std_error().unwrap_or(0.0);
-        // with fewer draws than the pilot's, what the pilot saw may be missing: the error bar would say less
-        // than is known
+        // fewer draws than the pilot's might miss rare values that the pilot found
         let fewest = pilot.draws();
         if reached == 0.0 {
-            return Ok((fewest.min(LONG), None));
+            return Ok((fewest.min(PILOT_WORK), None));
         }
         let needed = (fewest as f64 * (reached / target).powi(2)).ceil().max(fewest as f64).min(f64::MAX);
         let limit = match self.max_time {
@@ -394,48 +391,48 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Threads, at most.
+/// The largest number of threads.
 const MOST_THREADS: usize = 1024;
 
 /// The longest time to run for.
 const LONGEST: Duration = Duration::from_secs(1_000_000);
 
-/// Blocks of a run of few draws, at least: its last ones leave hardly a thread idle.
+/// The fewest blocks of a run (if it has as many draws): enough to keep all threads busy to the end.
 const BLOCKS: u64 = 32;
 
-/// Draws in a block, at most.
+/// The most draws in a block.
 const LARGEST_BLOCK: u64 = 1 << 14;
 
 /// Blocks between two reports of progress: at first, and at most.
 const FIRST_BATCH: u64 = 64;
 const LARGEST_BATCH: u64 = 1024;
 
-/// Batches shorter than this are doubled.
-const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
+/// Batches that take less time than this are doubled.
+const BATCH_TIME: Duration = Duration::from_millis(50);
 
-/// Draws that a pilot run begins with.
+/// Draws in a pilot run's first stage.
 const FIRST_STAGE: u64 = 64;
 
-/// Draws of a pilot run where they are cheap: its std error is known to a part in a thousand, if the fourth
-/// moment is that of a normal law. A draw of more than 16 random numbers or evaluations counts for more than
+/// Draws of a pilot run of cheap draws: its std error is accurate to 0.1 % if the draws' fourth moment is
+/// that of a normal distribution. A draw with more than 16 random numbers or evaluations counts as more than
 /// one.
-const LONG: u64 = 1 << 20;
+const PILOT_WORK: u64 = 1 << 20;
 
-/// Draws after which a pilot run that has not varied is taken to have no variance.
-const STILL: u64 = 1 << 24;
+/// Draws (counted likewise) after which a pilot run without variance ends.
+const CONSTANT_WORK: u64 = 1 << 24;
 
-/// Sets the pilot's seed apart from the run's.
-const PILOT: u64 = 0x7069_6c6f_7420_7275;
+/// Makes the pilot's seeds differ from the run's.
+const PILOT_SALT: u64 = 0x7069_6c6f_7420_7275;
 
-/// Which threads do the work.
+/// The threads that compute draws.
 enum Workers {
-    /// The calling one alone: starting another would take as long as some ten thousand draws.
+    /// Only the calling one: starting another takes as long as ten thousand cheap draws.
     Caller,
     AllCores,
     Own(rayon::ThreadPool),
 }
 
-/// What is run, by whom, and what it has cost so far.
+/// The estimator, its threads, and the work done so far.
 struct Work<'e, E: ?Sized> {
     estimator: &'e E,
     workers: Workers,
@@ -443,13 +440,13 @@ struct Work<'e, E: ?Sized> {
 }
 
 impl<E: Estimator + ?Sized> Work<'_, E> {
-    /// Takes these blocks of a run of `draws` draws.
+    /// Computes these blocks of a run of `draws` draws.
     fn extend(&mut self, blocks: &mut Blocks, seed: u64, range: Range<u64>, draws: u64) -> Result<()> {
         let size = block_size(draws);
         let estimator = self.estimator;
         let one = |block| one_block(estimator, seed, block, size.min(draws - block * size));
         let (first, end) = (range.start, range.end.min(draws.div_ceil(size)));
-        // each block may go to another thread: a slow one holds up no other
+        // one block per task, so that a slow block does not delay others
         let count = usize::try_from(end.saturating_sub(first)).unwrap_or(usize::MAX);
         let side_by_side = || -> Vec<_> {
             (0..count).into_par_iter().with_max_len(1).map(|n| one(first + n as u64)).collect()
@@ -468,7 +465,7 @@ impl<E: Estimator + ?Sized> Work<'_, E> {
     }
 }
 
-/// Draws in each block of a run of `draws`: a power of two, so that runs of about as many draws share their
+/// Draws in each block of a run of `draws`: a power of two, so that runs of similar length share their
 /// streams.
 fn block_size(draws: u64) -> u64 {
     let size = (draws / BLOCKS).clamp(1, LARGEST_BLOCK);
@@ -486,7 +483,7 @@ impl Cost {
     }
 }
 
-/// The one place where the time of a run, or of a draw, is read.
+/// The time since the start of a run: every time measured in a run comes from here.
 pub(crate) enum Watch<'a> {
     System(Option<Instant>),
     Own(&'a Clock<'a>, Duration),
@@ -509,11 +506,11 @@ impl<'a> Watch<'a> {
     }
 }
 
-/// Draws that a clock has to move in: a microsecond or more, and some milliseconds where draws are no cheaper
-/// than most.
-const TICKLESS: u64 = 1 << 16;
+/// If a clock has not advanced after this many draws (at least some microseconds), it is taken to stand
+/// still.
+const CLOCK_DRAWS: u64 = 1 << 16;
 
-/// Draws a second of one of the threads, which began at the first of two times, up to the second.
+/// The speed of one thread in draws per second, measured between the two times given.
 fn pace(
     estimator: &(impl Estimator + ?Sized),
     seed: u64,
@@ -528,13 +525,13 @@ fn pace(
         draws += chunk;
         let before = now;
         now = watch.elapsed();
-        if now < before || (now == start && draws >= TICKLESS) {
+        if now < before || (now == start && draws >= CLOCK_DRAWS) {
             return Err(Error::Clock);
         }
         if now >= until {
             break;
         }
-        // no more than what is left of the time has room for
+        // at most what fits into the remaining time
         let room = draws as f64 * (until - now).as_secs_f64() / (now - start).as_secs_f64();
         chunk = (2 * chunk).min(LARGEST_BLOCK).min(room as u64).max(1);
     }
@@ -555,7 +552,8 @@ fn one_block(
     Ok((estimate, cost))
 }
 
-/// Takes the first `draws` draws of a block, at most [`SLICE`] at a time, and sees that they are finite.
+/// Computes the first `draws` draws of a block, at most [`SLICE`] at a time, checks that they are finite, and
+/// passes them to `take`.
 pub(crate) fn walk_block(
     estimator: &(impl Estimator + ?Sized),
     seed: u64,

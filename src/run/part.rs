@@ -1,4 +1,4 @@
-//! Parts of a run, and the whole that they make: the blocks' estimates along a fixed binary tree.
+//! Shards of a run, and merging them: the blocks' estimates along a fixed binary tree.
 
 use std::time::Duration;
 
@@ -8,10 +8,11 @@ use super::{Cost, Outcome, block_size};
 use crate::error::{Error, Result};
 use crate::estimate::Estimate;
 
-/// One shard of a run: what its blocks gave, to the last bit, so that [`merge`] can make the whole run of all
-/// its shards, wherever they ran.
+/// One shard of a run: the estimates of its blocks, to the last bit, so that [`merge`] can put the whole run
+/// together from shards of any machines.
 ///
-/// As JSON it is small: some numbers, and at most two estimates for each doubling of the number of blocks.
+/// Its JSON form is small: a few numbers, and at most two estimates for each doubling of the number of
+/// blocks.
 ///
 /// ```
 /// use unbiased::{Budget, Run, inversion::Exponential, merge};
@@ -39,14 +40,14 @@ impl Part {
     }
 }
 
-/// Puts a run together from all of its shards, in any order: the estimate has the bits of a run that was
-/// never cut.
+/// Puts a run together from all of its shards, in any order: the estimate has the same bits as that of the
+/// undivided run.
 ///
-/// The cost and the time are the sums of theirs.
+/// The cost and the time are the sums over the shards.
 ///
 /// # Errors
-/// If the shards are of runs with other seeds or numbers of draws, one is missing, or one is there twice.
-/// Whether they are of the same estimator only their files' names can tell.
+/// If the shards have different seeds or numbers of draws, one is missing, or one is there twice. It cannot
+/// detect shards of different estimators.
 pub fn merge(parts: &[Part]) -> Result<Outcome> {
     let refused = |reason: String| Err(Error::Parts { reason });
     let Some(Part { seed, draws, .. }) = parts.first() else {
@@ -83,9 +84,9 @@ pub fn merge(parts: &[Part]) -> Result<Outcome> {
     Ok(Outcome { estimate, seed: *seed, cost, elapsed, pilot: None, shortfall: None, part: None })
 }
 
-/// Neighbouring blocks, as few estimates as a binary tree over all block numbers has for them: node j of
-/// level l holds blocks j·2ˡ to (j + 1)·2ˡ − 1, merged from its two halves. So the sums of a run have the
-/// same roundings, however its blocks are cut into shards.
+/// Consecutive blocks, as the fewest nodes that cover them in a binary tree over all block numbers: node j of
+/// level l is the estimate of blocks j·2ˡ to (j + 1)·2ˡ − 1, merged from its two halves. So the sums of a run
+/// are rounded alike, however its blocks are cut into shards.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Blocks {
     first: u64,
@@ -94,18 +95,18 @@ pub(super) struct Blocks {
 }
 
 impl Blocks {
-    /// None yet, and this one next.
+    /// No blocks yet; `first` will be the first one.
     pub fn from(first: u64) -> Self {
         Self { first, end: first, nodes: Vec::new() }
     }
 
-    /// Takes in the next block.
+    /// Adds the next block.
     pub fn push(&mut self, estimate: &Estimate) {
         self.push_node(0, *estimate);
     }
 
     fn push_node(&mut self, mut level: u32, mut estimate: Estimate) {
-        // the node before is the left half of one that this completes
+        // an odd index: the previous node is the left half of their common parent
         let begins = |end: u64, level: u32| end.checked_shr(level).unwrap_or(0);
         let mut index = begins(self.end, level);
         while let Some((_, before)) = self.nodes.pop_if(|(other, _)| *other == level && index % 2 == 1) {
@@ -122,7 +123,7 @@ impl Blocks {
         }
     }
 
-    /// Of all its blocks.
+    /// The estimate of all its blocks.
     pub fn estimate(&self) -> Estimate {
         let last_first = self.nodes.iter().rev().map(|(_, estimate)| *estimate);
         last_first.reduce(|right, left| merged(left, &right)).unwrap_or_default()

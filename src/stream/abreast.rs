@@ -1,4 +1,4 @@
-//! Draws side by side, each in the lane of its generator.
+//! Up to 32 draws at a time, each in the lane of its generator.
 
 use super::generator::{Fill, Xoshiro};
 use super::word::LANES;
@@ -6,7 +6,7 @@ use super::{Source, Stream};
 use crate::fast::{Real, widest};
 
 impl Stream {
-    /// This draw, with its numbers in the first lane.
+    /// The current draw alone, with its numbers in the first lane.
     pub(crate) fn alone(&mut self) -> Abreast<'_> {
         Abreast {
             first: self.draw,
@@ -22,7 +22,7 @@ impl Stream {
         }
     }
 
-    /// The next draws, each in the lane of its generator: where one has ended another begins.
+    /// The next draws, each in the lane of its generator; when one ends, the lane's next draw begins.
     pub(crate) fn abreast(&mut self, draws: usize) -> Abreast<'_> {
         if let Source::Script(_) = self.source {
             return Abreast { count: draws, under_way: draws.min(1), ..self.alone() };
@@ -43,26 +43,27 @@ impl Stream {
     }
 }
 
-/// Draws side by side that take their numbers a few at a time, all as many.
+/// Several draws in progress, which take their numbers a few at a time, each equally many.
 pub(crate) struct Abreast<'a> {
     rng: &'a mut Stream,
     first: u64,
     count: usize,
     stride: usize,
-    /// The draw of each lane, counted from the first, how many have one, and how many numbers the lane had
-    /// given before it.
+    /// The current draw of each lane, counted from the first one.
     places: [Option<usize>; LANES],
+    /// How many lanes have a draw.
     under_way: usize,
+    /// How many numbers the lane had returned before its current draw, and has returned by now.
     before: [u64; LANES],
     given: u64,
     /// The generators of the lanes that have no draw.
     waiting: [Xoshiro; LANES],
-    /// Whether each lane has a generator of its own.
+    /// Whether the lanes are in use, not just the current draw's generator.
     in_lanes: bool,
 }
 
 impl Abreast<'_> {
-    /// The draw that is under way in a lane, counted from the first.
+    /// The current draw of a lane, counted from the first one.
     #[inline]
     pub fn draw(&self, lane: usize) -> Option<usize> {
         self.places[lane]
@@ -73,7 +74,7 @@ impl Abreast<'_> {
         self.under_way > 0
     }
 
-    /// Lets a lane that has a draw go on to its next one, if there is one.
+    /// Goes on to a lane's next draw; returns whether there is one.
     #[inline]
     pub fn next_draw(&mut self, lane: usize) -> bool {
         let next = self.places[lane].map(|place| place + self.stride);
@@ -111,7 +112,7 @@ impl Abreast<'_> {
         self.rng.count_evaluations(n);
     }
 
-    /// Ends when all draws have: the stream goes on with the one after them.
+    /// Call it when all draws have ended: the stream goes on with the draw after them.
     pub fn finish(self) {
         let Self { rng, first, count, waiting, in_lanes, .. } = self;
         if in_lanes {

@@ -1,4 +1,4 @@
-//! The generators of a block, one at a time or side by side.
+//! The generators of a block, one at a time or in vector lanes.
 
 use pulp::NullaryFnOnce;
 
@@ -6,7 +6,7 @@ use super::points::SobolRows;
 use super::word::{GOLDEN, LANES, mix};
 use crate::fast::Real;
 
-/// The generator Xoshiro256++, whose state can be taken from a lane and put back.
+/// Xoshiro256++, with a state that can be copied from a lane and back.
 #[derive(Debug, Clone, Copy)]
 pub struct Xoshiro(pub [u64; 4]);
 
@@ -26,10 +26,10 @@ impl Xoshiro {
     }
 }
 
-/// Lanes that have room in the registers together.
+/// Lanes whose states fit into the registers together.
 pub const TOGETHER: usize = 16;
 
-/// What sets the lanes apart.
+/// Constants that make the lanes' states differ.
 pub const SALTS: [[u64; LANES]; 4] = {
     let mut salts = [[0; LANES]; 4];
     let mut n = 0;
@@ -74,11 +74,11 @@ impl Lanes {
 pub struct Fill<'a, T> {
     pub lanes: &'a mut Lanes,
     pub rows: &'a mut [[T; LANES]],
-    /// Numbers of a draw, rows from one of them to the next, and how many of those to fill.
+    /// Numbers per draw, rows per number, and how many of those rows to fill.
     pub each: usize,
     pub sets: usize,
     pub count: usize,
-    /// Where they are placed.
+    /// Sobol coordinates for the numbers, if any.
     pub sobol: Option<&'a SobolRows>,
 }
 
@@ -98,7 +98,7 @@ impl<T: Real> Fill<'_, T> {
     #[inline(always)]
     fn fill(self, place: impl Fn(&mut [u64; TOGETHER], usize, usize, usize)) {
         for lane in (0..LANES).step_by(TOGETHER) {
-            // a copy, which stays in registers
+            // a copy that stays in registers
             let mut state = [[0; TOGETHER]; 4];
             for (copy, lanes) in state.iter_mut().zip(&self.lanes.state) {
                 copy.copy_from_slice(&lanes[lane..][..TOGETHER]);
@@ -118,7 +118,7 @@ impl<T: Real> Fill<'_, T> {
     }
 }
 
-/// The next word of every lane: [`Xoshiro::next`] side by side.
+/// The next word of every lane, by [`Xoshiro::next`].
 #[inline(always)]
 fn next(state: &mut [[u64; TOGETHER]; 4]) -> [u64; TOGETHER] {
     let [s0, s1, s2, s3] = state;
@@ -131,7 +131,7 @@ fn next(state: &mut [[u64; TOGETHER]; 4]) -> [u64; TOGETHER] {
     words
 }
 
-/// Four words out of seed and block, of which a finaliser makes a generator's state.
+/// Four words from seed and block; `mix` of them and a salt is a generator's state.
 pub fn mixed(seed: u64, block: u64) -> [u64; 4] {
     [1, 2, 3, 4].map(|word| {
         let salt = GOLDEN.wrapping_mul(word);
@@ -148,7 +148,7 @@ mod tests {
     use crate::fast::widest;
     use crate::stream::Stream;
 
-    /// Every generator of a block, alone and in its lane, is the library's from the same state.
+    /// Every generator of a block, alone and in its lane, agrees with rand_xoshiro's from the same state.
     #[test]
     fn generators_are_the_librarys() {
         for (seed, block) in [(0, 0), (1, 7), (u64::MAX, 3)] {

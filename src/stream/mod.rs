@@ -1,8 +1,8 @@
-//! Where random numbers come from: one numbering of them by (seed, block, draw).
+//! Random numbers, indexed by (seed, block, draw).
 //!
 //! A block of a run has 32 generators. Draw i of the block takes its numbers from generator i mod 32, after
-//! the numbers of the draws before it there. So a draw's numbers do not depend on how draws are computed: one
-//! at a time in any order of the generators, or 32 side by side in the lanes of vectors.
+//! the earlier draws of that generator. So a draw's numbers do not depend on how draws are computed: one at a
+//! time, generator by generator, or 32 at a time in vector lanes.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -22,16 +22,16 @@ mod word;
 pub(crate) use abreast::Abreast;
 pub(crate) use word::{GRID, LANES, mix};
 
-/// A stream of random numbers: those of one block of a run, draw by draw.
+/// The random numbers of one block of a run, draw by draw.
 ///
-/// The generators are Xoshiro256++ (Blackman & Vigna 2019), started from (seed, block, place). The same
-/// triple gives the same numbers on every machine and in every release that does not say otherwise in the
-/// changelog. Seed, block and place are hashed together into the 256 bits of a generator's state, so
-/// neighbouring ones share nothing.
+/// The generators are Xoshiro256++ (Blackman & Vigna 2019), seeded by (seed, block, lane). The same triple
+/// gives the same numbers on every machine, and in every release unless the changelog says otherwise. Seed,
+/// block and lane are hashed together into the 256 bits of a generator's state, so similar triples give
+/// unrelated generators.
 ///
-/// It is an ordinary [`rand::Rng`], so every distribution of rand's can draw from it, and it counts what it
-/// gave, so that an estimator's cost is known. It gives the numbers of one draw until
-/// [`next_draw`](Self::next_draw).
+/// It is a [`rand::Rng`], so it works with every distribution of rand, and it counts the numbers taken, so
+/// that an estimator's cost is known. It returns numbers of the same draw until
+/// [`next_draw`](Self::next_draw) is called.
 ///
 /// ```
 /// use unbiased::Stream;
@@ -47,23 +47,23 @@ pub struct Stream {
     source: Source,
     seed: u64,
     block: u64,
-    /// The generator of the current draw, and all of them if another was ever needed; there its own place is
-    /// out of date.
+    /// The generator of the current draw.
     one: Xoshiro,
+    /// All generators, once another one was needed; the current one's entry here is out of date.
     lanes: Option<Box<Lanes>>,
-    /// The current draw, and the numbers that were given before it.
+    /// The current draw, and how many numbers were taken before it.
     draw: u64,
     before: u64,
     random_numbers: u64,
     evaluations: u64,
 }
 
-/// What becomes of the generators' numbers.
+/// How the stream's numbers are made.
 #[derive(Debug, Clone)]
 enum Source {
     Independent,
     Placed(Placement),
-    /// These words one after the other, then 0 for ever, in their place.
+    /// These words in order, and 0 after the last one.
     Script(Vec<u64>),
 }
 
@@ -76,25 +76,26 @@ impl Stream {
         Self { source, seed, block, one, lanes: None, draw: 0, before: 0, random_numbers: 0, evaluations: 0 }
     }
 
-    /// A stream whose draws are the points of a placed set, randomised by `seed`.
+    /// A stream whose draws are the points of a jittered or Sobol set, randomised by `seed`.
     pub(crate) fn placed(placement: Placement, seed: u64) -> Self {
         Self { source: Source::Placed(placement), ..Self::new(seed, 0) }
     }
 
-    /// A stream that gives these uniform numbers, each rounded down to the grid of 2⁻⁵³ and kept in [0, 1),
-    /// and then 0 for ever: it makes of an estimator a function on the unit cube.
+    /// A stream that returns these uniform numbers, each rounded down to a multiple of 2⁻⁵³ and clamped to
+    /// [0, 1), and 0 after the last one. With it an estimator can be evaluated as a function on the unit
+    /// cube.
     ///
     /// ```
     /// let mut rng = unbiased::Stream::scripted(&[0.25, 0.75]);
     /// assert_eq!([rng.uniform(), rng.uniform(), rng.uniform()], [0.25, 0.75, 0.0]);
     /// ```
     pub fn scripted(uniforms: &[f64]) -> Self {
-        // a float-to-int cast saturates, and takes NaN to 0
+        // a float-to-int cast saturates, and turns NaN into 0
         let word = |u: &f64| ((u * GRID) as u64).min((1 << 53) - 1) << 11;
         Self { source: Source::Script(uniforms.iter().map(word).collect()), ..Self::new(0, 0) }
     }
 
-    /// Starts over with a script of these steps k of the grid k·2⁻⁵³.
+    /// Restarts the stream with the script of uniform numbers k·2⁻⁵³, for k in `steps`.
     #[inline]
     pub(crate) fn rewind(&mut self, steps: &[u64]) {
         let words = steps.iter().map(|step| step << 11);
@@ -107,7 +108,7 @@ impl Stream {
         (self.random_numbers, self.evaluations) = (0, 0);
     }
 
-    /// A uniform number on the grid k·2⁻⁵³ in [0, 1): never 1, and 0 with probability 2⁻⁵³.
+    /// A uniform multiple of 2⁻⁵³ in [0, 1): never 1, and 0 with probability 2⁻⁵³.
     ///
     /// 1 − u is exact on this grid and lies in (0, 1].
     #[inline]
@@ -152,13 +153,12 @@ impl Stream {
         (self.draw, self.before) = (draw, self.random_numbers);
     }
 
-    /// Fills `draws` with what `draw` makes of the numbers of each: a generator after the other, each of
-    /// which then stays in registers.
+    /// Fills `draws` with calls of `draw`, generator by generator, so that each stays in registers.
     #[inline]
     pub(crate) fn one_at_a_time(&mut self, draws: &mut [f64], draw: impl Fn(&mut Self) -> f64) {
         match self.source {
             Source::Independent => {
-                // one of its own, of which the compiler knows the source: the generator can stay in registers
+                // a copy whose source the compiler knows, so that the generator can stay in registers
                 let source = Source::Independent;
                 let mut rng = Self { source, lanes: self.lanes.take(), ..*self };
                 for lane in 0..LANES.min(draws.len()) {
@@ -184,8 +184,8 @@ impl Stream {
         self.lanes.get_or_insert_with(|| Box::new(Lanes::new(self.seed, self.block)))
     }
 
-    /// The next word of a source that few streams have: out of the way, so that a draw stays short enough to
-    /// be inlined.
+    /// The next word of a stream that is not independent. Not inlined, so that the common case is short
+    /// enough to be.
     #[inline(never)]
     fn elsewhere(&mut self, index: u64) -> u64 {
         match &self.source {
@@ -197,15 +197,15 @@ impl Stream {
         }
     }
 
-    /// The generator of the current draw.
+    /// The index of the current draw's generator.
     pub(crate) fn lane(&self) -> usize {
         if let Source::Script(_) = self.source { 0 } else { self.draw as usize % LANES }
     }
 
-    /// Gives each of the next `draws` draws its first `each` numbers, and goes on to the draw after them.
-    /// There are `each` times as many rows as 32 draws take, which are at most `sets`: number k of a draw is
-    /// in row k·sets and those after it, in the place of its generator; what lies before the first draw or
-    /// after the last stays.
+    /// Writes the first `each` numbers of each of the next `draws` draws into `rows`, and goes on to the draw
+    /// after them. A set is 32 draws, one per generator, and there are at most `sets`: number k of a draw in
+    /// set s is in row k·sets + s, at the index of its generator. Entries before the first draw and after the
+    /// last are left as they are.
     pub(crate) fn fill_rows<T: Real>(
         &mut self,
         each: usize,
@@ -268,7 +268,7 @@ impl Stream {
         self.draw += (count * LANES) as u64;
     }
 
-    /// Leaves numbers out until this many were given in all.
+    /// Skips numbers until this many were taken in all.
     #[inline]
     pub(crate) fn skip_to(&mut self, random_numbers: u64) {
         while self.random_numbers < random_numbers {
@@ -276,23 +276,23 @@ impl Stream {
         }
     }
 
-    /// How many random numbers (words of 64 bits) were given.
+    /// How many random numbers (64-bit words) were taken.
     pub fn random_numbers(&self) -> u64 {
         self.random_numbers
     }
 
-    /// Counts `n` evaluations of an integrand (or rays, or path vertices): the work that a draw took.
+    /// Adds `n` to the count of evaluations (of an integrand, or rays, or path vertices).
     #[inline]
     pub fn count_evaluations(&mut self, n: u64) {
         self.evaluations = self.evaluations.wrapping_add(n);
     }
 
-    /// How many evaluations the estimators that drew from here counted.
+    /// How many evaluations were counted.
     pub fn evaluations(&self) -> u64 {
         self.evaluations
     }
 
-    /// Counts what a stream gave that was started from here.
+    /// Adds the counts of a stream that was seeded from this one.
     pub(crate) fn count(&mut self, other: &Self) {
         self.random_numbers = self.random_numbers.wrapping_add(other.random_numbers);
         self.count_evaluations(other.evaluations);

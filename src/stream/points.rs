@@ -1,4 +1,4 @@
-//! Sets of points: where the numbers of a draw lie if they are not independent.
+//! Jittered and Sobol point sets, whose points are the random numbers of draws.
 
 use std::sync::LazyLock;
 
@@ -7,10 +7,10 @@ use sobol_burley::parts::{owen_scramble_rev, sobol_rev};
 
 use super::word::{GOLDEN, GRID, LANES, mix, on_the_grid};
 
-/// Numbers of a draw that are placed, at most; further ones are independent.
+/// At most this many numbers of a draw are placed; further ones are independent.
 const PLACED: u64 = NUM_DIMENSIONS as u64;
 
-/// Where the numbers of a set's draws lie.
+/// A randomised point set.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Placement {
     Sobol(Sobol),
@@ -18,7 +18,7 @@ pub(crate) enum Placement {
 }
 
 impl Placement {
-    /// A random word, moved to where number `dimension` of draw `point` belongs.
+    /// Moves a random word into the cell of coordinate `dimension` of point `point`.
     #[inline]
     pub fn place(&self, word: u64, point: u64, dimension: u64) -> u64 {
         match self {
@@ -34,7 +34,7 @@ impl Placement {
 /// A scrambled set of Sobol points.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sobol {
-    /// The first binary digits of its coordinates, of which it has every combination once.
+    /// How many leading binary digits of a coordinate are Sobol's: each combination occurs once.
     digits: u32,
     seed: u64,
 }
@@ -44,25 +44,25 @@ impl Sobol {
         Self { digits: points.next_power_of_two().trailing_zeros(), seed }
     }
 
-    /// Bits of its own for every coordinate: one 32-bit seed for all, as `sobol_burley::sample` takes, knows
-    /// only 2³² replicates.
+    /// Different bits for every coordinate: `sobol_burley::sample` takes one 32-bit seed for all of them,
+    /// which allows only 2³² replicates.
     #[inline]
     fn scramble(&self, dimension: u64) -> u32 {
         (hash(self.seed, dimension) >> 32) as u32
     }
 
-    /// A word with its first digits replaced by those of a coordinate that is given in reverse, scrambled.
+    /// A word with its leading digits replaced by the scrambled digits of a bit-reversed Sobol coordinate.
     ///
     /// Over all scrambles the first 16 digits take each value equally often (`owen_scramble_rev` adds the
-    /// scramble's low half and then only permutes); the further ones of `sobol_burley`'s 23 do not quite.
+    /// scramble's low half and then only permutes); the other 7 of `sobol_burley`'s 23 digits do not quite.
     #[inline(always)]
     fn replaced(&self, word: u64, sobol_rev: u32, scramble: u32) -> u64 {
         let below = u64::MAX >> self.digits;
         u64::from(owen_scramble_rev(sobol_rev, scramble).reverse_bits()) << 32 & !below | word & below
     }
 
-    /// Where the first `each` numbers of points belong, from `first`, a multiple of [`LANES`], on: of so many
-    /// sets of as many neighbours.
+    /// The first `each` coordinates of `sets` · [`LANES`] consecutive points from `first`, a multiple of
+    /// [`LANES`].
     pub fn rows(self, first: u64, each: usize, sets: usize) -> SobolRows {
         let placed = (0..NUM_DIMENSIONS).take(each);
         let firsts = (first..).step_by(LANES).take(sets);
@@ -80,17 +80,18 @@ impl Sobol {
     }
 }
 
-/// The coordinates of the points of sets, as [`Sobol::rows`] gives them.
+/// Coordinates of consecutive points, as [`Sobol::rows`] returns them.
 pub(crate) struct SobolRows {
     sobol: Sobol,
-    /// What each is scrambled by, and those of the first points of all.
+    /// For each coordinate its scramble, and its values at the first 32 points of the sequence.
     coordinates: Vec<(u32, &'static [u32; LANES])>,
-    /// Of each set's first point, set by set.
+    /// The coordinates of each set's first point, set by set.
     firsts: Vec<u32>,
 }
 
 impl SobolRows {
-    /// Places words of number `number` of neighbouring points of a set, of which the first is its `lane`th.
+    /// Places words of coordinate `number` of consecutive points of a set, the first of which is its
+    /// `lane`th.
     #[inline(always)]
     pub fn place<const N: usize>(&self, words: &mut [u64; N], set: usize, lane: usize, number: usize) {
         let Some((scramble, next)) = self.coordinates.get(number) else { return };
@@ -106,8 +107,7 @@ fn reversed(point: u64) -> u32 {
     (point as u32).reverse_bits()
 }
 
-/// The first 32 points of the sequence, by coordinate: point 32k + l is that of 32k and that of l, added
-/// digit by digit without a carry.
+/// The first 32 points of the sequence, by coordinate: point 32k + l is the XOR of points 32k and l.
 static LOWEST: LazyLock<Vec<[u32; LANES]>> = LazyLock::new(|| {
     let points = |dimension| std::array::from_fn(|point| sobol_rev(reversed(point as u64), dimension));
     (0..NUM_DIMENSIONS).map(points).collect()
@@ -118,7 +118,7 @@ fn hash(seed: u64, n: u64) -> u64 {
     mix(seed.wrapping_add(GOLDEN.wrapping_mul(n + 1)))
 }
 
-/// A grid of cells with a point in each.
+/// A jittered set: a grid of cells with one point in each.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Grid {
     side: u32,
@@ -135,25 +135,25 @@ impl Grid {
         let cell = self.cell(point as u32, dimension / 2);
         let place = if dimension.is_multiple_of(2) { cell % self.side } else { cell / self.side };
         let u = (f64::from(place) + on_the_grid(word)) / f64::from(self.side);
-        // the cast cuts a number off that rounding made 1
+        // `min`: rounding may have made u equal to 1
         ((u * GRID) as u64).min(GRID as u64 - 1) << 11 | word & 0x7ff
     }
 
-    /// The cell of a point in one of its planes.
+    /// The cell of a point in a plane, that is, for a pair of dimensions.
     #[inline]
     fn cell(&self, point: u32, plane: u64) -> u32 {
         if plane == 0 {
             return point;
         }
-        // a permutation that looks random, turned so that every cell is as likely
+        // a pseudo-random permutation, then a random shift, which makes every cell equally likely
         let (cells, key) = (self.side * self.side, hash(self.seed, plane));
         let turn = (((key >> 32) * u64::from(cells)) >> 32) as u32;
         (permuted(point, cells, key as u32) + turn) % cells
     }
 }
 
-/// A permutation of 0 … n − 1, another one for each key: bijections of the numbers below a power of two,
-/// until it is below n (Kensler 2013, "Correlated multi-jittered sampling").
+/// A permutation of 0 … n − 1 that depends on the key: a bijection of the numbers below a power of two,
+/// repeated until the result is below n (Kensler 2013, "Correlated multi-jittered sampling").
 fn permuted(mut i: u32, n: u32, key: u32) -> u32 {
     let mask = n.next_power_of_two() - 1;
     loop {

@@ -1,16 +1,16 @@
-//! Random words: how they are mixed, and the uniform numbers that they stand for.
+//! Random words: mixing them, and turning them into uniform numbers.
 
-/// Generators of a block: as many as fill the widest vectors four times, since the steps of one draw depend
-/// on each other.
+/// Generators of a block: four times as many as the widest vectors hold, to hide the latency of dependent
+/// steps.
 pub(crate) const LANES: usize = 32;
 
-/// Points of the grid of uniform numbers.
+/// How many different values a uniform number has.
 pub const GRID: f64 = (1u64 << 53) as f64;
 
 /// The upper 53 bits as a number in [0, 1).
 ///
-/// The upper and the lower half become numbers by their bits: a conversion of one integer to `f64` waits on
-/// x86 for what its register held before, which is often the draw before.
+/// The upper and the lower half are put into the mantissas of two `f64`: on x86, converting an integer to
+/// `f64` would depend on the register's previous value, often the previous draw.
 #[inline(always)]
 pub(crate) fn on_the_grid(bits: u64) -> f64 {
     const UPPER: f64 = 19_342_813_113_834_066_795_298_816.0; // 2⁸⁴: its last place is 2³²
@@ -39,7 +39,7 @@ mod tests {
     use crate::fast::Real;
     use crate::stream::Stream;
 
-    /// A conversion by bits is the plain one.
+    /// The conversion by bits agrees with the plain one.
     #[test]
     fn a_word_is_the_same_number_either_way() {
         let mut rng = Stream::new(5, 0);

@@ -1,4 +1,4 @@
-//! Draws and time of one rival, in batches whose spread is the error of its variance and of its time.
+//! Draws and times of one rival in batches, whose spread gives the errors of its variance and time.
 
 use std::time::{Duration, Instant};
 
@@ -8,35 +8,35 @@ use crate::estimate::{Estimate, SLICE};
 use crate::estimator::Estimator;
 use crate::run::{Cost, walk_block};
 
-/// Batches a rival: one is the median of their times, and two are its quartiles.
+/// Batches per rival: 4k + 1, so that the median and the quartiles of their times are single batches.
 pub(super) const COUNT: u64 = 17;
 
-/// The time of this many batches goes into warming up: 1 + ½ + ¼ + … of one for finding its length, and three
-/// for making sure of it.
+/// Warming up takes the time of this many batches: 1 + ½ + ¼ + … < 2 to find the number of draws, and two
+/// more to repeat the last one.
 const WARM: u64 = 4;
 
-/// Draws a batch: two have a variance.
+/// The fewest and the most draws in a batch: a variance needs two.
 const FEWEST: u64 = 2;
 const MOST: u64 = 1 << 40;
 
-/// What one batch of draws gave and took.
+/// The results and the time of one batch of draws.
 struct Batch {
     estimate: Estimate,
     least: f64,
     most: f64,
     cost: Cost,
-    /// all of it
+    /// of the whole batch
     elapsed: Duration,
     /// seconds that a draw takes
     seconds: f64,
 }
 
-/// Looks at the clock, a batch.
+/// Times the clock is read per batch.
 const LOOKS: u64 = 256;
 
 impl Batch {
-    /// The time of a draw is the median of up to 256 pieces of the batch, each so short that hardly one is
-    /// interrupted by what else the machine does.
+    /// The time of a draw is the median over up to 256 pieces of the batch, each so short that few are
+    /// interrupted by other processes.
     fn take(estimator: &dyn Estimator, seed: u64, block: u64, draws: u64) -> Result<Self> {
         let (mut estimate, mut least, mut most) = (Estimate::new(), f64::INFINITY, f64::NEG_INFINITY);
         let piece = draws.div_ceil(SLICE as u64).div_ceil(LOOKS) * SLICE as u64;
@@ -56,7 +56,7 @@ impl Batch {
         })?;
         let elapsed = start.elapsed();
         pieces.sort_by(f64::total_cmp);
-        // without a whole piece: all of it
+        // if there is no whole piece: the mean over the batch
         let median = pieces.get(pieces.len().saturating_sub(1) / 2).copied();
         let seconds = median.unwrap_or(elapsed.as_secs_f64() / draws as f64);
         Ok(Self { estimate, least, most, cost, elapsed, seconds })
@@ -70,9 +70,9 @@ pub(super) struct Batches {
 }
 
 impl Batches {
-    /// Draws to warm up, until it is known how many fill a batch.
+    /// Warms up, and finds how many draws make a batch of the right length.
     pub fn warm_up(estimator: &dyn Estimator, seed: u64, seconds: f64) -> Result<Self> {
-        // blocks that no batch uses
+        // a block that no batch uses
         let time = |draws| Ok(Batch::take(estimator, seed, u64::MAX, draws)?.elapsed.as_secs_f64());
         let draws = draws_that_take(seconds / (COUNT + WARM) as f64, time)?;
         Ok(Self { draws, taken: Vec::new() })
@@ -117,10 +117,10 @@ impl Batches {
     }
 }
 
-/// How many draws take `aim` seconds, by a clock that says how long so many take.
+/// How many draws take `aim` seconds, where `time` measures a given number of draws.
 ///
-/// The batch that decides may have been interrupted, which would make all batches too short: it is repeated
-/// twice, and the shortest counts.
+/// An interruption of the last measurement would make all batches too short, so it is repeated twice, and the
+/// shortest time counts.
 fn draws_that_take(aim: f64, mut time: impl FnMut(u64) -> Result<f64>) -> Result<u64> {
     let mut draws = FEWEST;
     loop {
@@ -138,21 +138,21 @@ fn draws_that_take(aim: f64, mut time: impl FnMut(u64) -> Result<f64>) -> Result
     }
 }
 
-/// The probability of calling draws heavy whose tails are those of an exponential.
+/// The probability of marking draws whose tails are those of an exponential distribution.
 const FALSE_ALARM: f64 = 1e-3;
 
-/// Whether the draw that lies `furthest` from the mean holds more of the sum of squares Σ (X − X̄)² than it
-/// would if the fourth moment were finite.
+/// Whether the largest square contributes more to Σ (X − X̄)² than is plausible if the fourth moment is
+/// finite; `furthest` is its root, the largest |X − X̄|.
 ///
-/// The share of the largest of n squares falls like 1/n but for a slowly growing factor. Two bounds, of which
-/// the larger counts:
-/// - ln²(n/p)/n, where the tails are no heavier than an exponential's: P(|X − μ| > xσ) ≤ e^(−x), so the
-///   largest of n lies beyond ln(n/p) σ with probability p at most;
-/// - 1/√n, where they fall like a power. If E\[X⁴\] is finite, n P((X − μ)² > σ²√n) → 0, so the share ends up
-///   below; if P(|X| > x) falls like x^(−α) with α < 4, the share falls like n^(2/α − 1), or not at all from
-///   α = 2 down, and ends up above.
+/// The share of the largest of n squares falls like 1/n times a slowly growing factor. Its bound is the
+/// larger of
+/// - ln²(n/p)/n, for tails no heavier than an exponential's: P(|X − μ| > xσ) ≤ e^(−x), so the largest of n is
+///   more than ln(n/p) σ from the mean with probability at most p;
+/// - 1/√n, for tails that fall like a power. If E\[X⁴\] is finite, n P((X − μ)² > σ²√n) → 0, so the share is
+///   finally below the bound; if P(|X| > x) falls like x^(−α) with α < 4, the share falls like n^(2/α − 1),
+///   or not at all for α ≤ 2, and is finally above.
 ///
-/// Below 132 draws the first is more than 1: nothing is seen.
+/// Below 132 draws the first bound is more than 1, so nothing is marked.
 fn is_heavy(furthest: f64, all: &Estimate) -> bool {
     let draws = all.draws() as f64;
     let Some(std_error) = all.std_error() else { return false };
@@ -178,7 +178,7 @@ mod tests {
     use crate::rectangle::{Integrand, Rectangle};
     use crate::roulette::LightModel;
 
-    /// A clock for draws of `each` seconds, which stops for `stop` seconds at the calls named.
+    /// A clock for draws of `each` seconds, with an interruption of `stop` seconds in the given calls.
     fn clock(each: f64, stop: f64, calls: &[u32]) -> impl FnMut(u64) -> Result<f64> {
         let mut call = 0;
         move |draws| {
@@ -210,7 +210,7 @@ mod tests {
         }
     }
 
-    /// An interruption of ten batches' time, wherever it falls, and two of them one after the other.
+    /// An interruption of ten batches' time in any call, and two in consecutive calls.
     #[test]
     fn an_interruption_makes_no_batch_short() {
         for first in 1..=14 {
@@ -233,8 +233,8 @@ mod tests {
         assert_eq!(draws_that_take(1e-3, |_| Ok(0.0)).unwrap(), MOST);
     }
 
-    /// Draws that take 2 µs or more, in pieces and in less than one: no median is more than twice the mean,
-    /// and two of three thousand draws' three pieces are whole.
+    /// Draws that take 2 µs or more, with and without whole pieces: a median is at most twice the mean, and
+    /// of 3000 draws' three pieces two are whole.
     #[test]
     fn the_time_of_a_draw_is_that_of_one() {
         let slow = from_fn(|rng| {
@@ -253,7 +253,7 @@ mod tests {
         }
     }
 
-    /// The ninth of seventeen times is their median, the fifth and the thirteenth their quartiles.
+    /// Of seventeen times the ninth is the median, and the fifth and the thirteenth are the quartiles.
     #[test]
     fn times_are_medians_and_quartiles() {
         let of = |k: u64| {
@@ -268,7 +268,7 @@ mod tests {
                 seconds: 1e-6 * k as f64,
             }
         };
-        // in some order
+        // in a permuted order
         let batches = Batches { draws: 2, taken: (0..COUNT).map(|k| of(1 + 5 * k % COUNT)).collect() };
         let trade = Trade::new(1, 1.0).unwrap();
         let found = batches.measured(&Rival::new("", from_fn(|_| 0.0)), &trade);
@@ -285,7 +285,7 @@ mod tests {
         assert!((found.variance_error - (variance / 17.0).sqrt()).abs() <= 1e-12);
     }
 
-    /// How many of `tries` sets of n draws are called heavy.
+    /// How many of `tries` sets of n draws are marked.
     fn alarms(tries: u64, n: u64, estimator: &dyn Estimator) -> u64 {
         let heavy = |block| {
             let batch = Batch::take(estimator, 11, block, n).unwrap();
@@ -297,8 +297,8 @@ mod tests {
         (0..tries).filter(|block| heavy(*block)).count() as u64
     }
 
-    /// Of draws with an exponential's tail one set in a thousand may be marked: more than 19 of 2,000 are
-    /// with probability 1e-13. A threshold of 2 % marks all of them.
+    /// At most one set in a thousand with an exponential's tail is marked: more than 19 of 2,000 with
+    /// probability 1e-13. (A threshold of 2 % would mark all of them.)
     #[test]
     fn light_tails_are_not_marked() {
         let room = BoxRoom::new(Scene::default()).unwrap();
@@ -307,13 +307,13 @@ mod tests {
         assert!(alarms(2000, 1024, &Exponential::new(1.0).unwrap()) <= 19);
         assert!(alarms(100, 1 << 14, &Exponential::new(1.0).unwrap()) <= 5);
         assert!(alarms(500, 1024, &by_throughput) <= 9);
-        // within 11 standard deviations: never
+        // draws within 11 standard deviations are never marked
         let cosine = Lambertian::new(0.8).unwrap().estimator(|w| w.cos_theta().powi(10), Uniform);
         for n in [2, 100, 132, 1024, 1 << 14] {
             assert_eq!(alarms(20, n, &from_fn(|rng| rng.uniform())), 0);
             assert_eq!(alarms(20, n, &cosine), 0);
         }
-        // all its squares in one draw, of 131 at most
+        // all of the variance in one draw: not marked for up to 131 draws
         let once = std::sync::atomic::AtomicU64::new(0);
         let lonely = from_fn(|_| if once.fetch_add(1, Relaxed) == 5 { 1.0 } else { 0.0 });
         assert_eq!(alarms(1, 131, &lonely), 0);
@@ -321,10 +321,10 @@ mod tests {
         assert_eq!(alarms(1, 200, &lonely), 1);
     }
 
-    /// At 16,384 draws a tail P(X > x) ~ x⁻² is missed once in some 400 sets, so more than 5 of 50 are with
-    /// probability 4e-9; heavier ones are missed less often. At 1,024 draws two thirds are found, of 1/x,
-    /// where α = 1, 98 in a hundred. An average of 64² pairs has its tail behind a near-normal bulk: 1/r by
-    /// all pairs is found once in 40 sets of 1,024, 15 times of 16,384, and always of 262,144.
+    /// With 16,384 draws a tail P(X > x) ~ x⁻² is missed in about 1 of 400 sets, so in more than 5 of 50 with
+    /// probability 4e-9; heavier tails are missed less often. With 1,024 draws two thirds are found; with a
+    /// tail ~ 1/x, 98 %. The mean over 64² pairs is nearly normal except far in its tail: 1/r by all pairs is
+    /// found in 1 of 40 sets of 1,024 draws, 15 of 40 of 16,384, and all of 262,144.
     #[test]
     fn infinite_variances_are_marked() {
         let square = Rectangle::WORKSHEET;
@@ -343,7 +343,7 @@ mod tests {
             let found = alarms(50, 1 << 14, estimator);
             assert!(found >= 45, "{index}: {found} of 50");
         }
-        // of 100, 98.8 on average: fewer than 80 with a probability below 1e-20
+        // 98.8 of 100 on average: fewer than 80 with a probability below 1e-20
         assert!(alarms(100, 1024, &pareto(1.0)) >= 80);
     }
 }

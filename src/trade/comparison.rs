@@ -1,46 +1,47 @@
-//! What a comparison found, and in which order.
+//! The result of a comparison, and the ranking of its rivals.
 
 use super::REAL;
 use super::measured::{Crossing, Measured, Nature};
 
-/// What a comparison found.
+/// The result of a comparison.
 ///
-/// `{}` shows it as a table for people, [`csv`](Self::csv) and serde (as JSON, say) give the same for
-/// programs, and `figure::trade` draws it.
+/// `{}` formats it as a table for people; [`csv`](Self::csv) and serde (for example as JSON) give the same
+/// for programs, and `trade::figures::comparison` draws it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     /// The seed of all draws.
     pub seed: u64,
-    /// What was estimated.
+    /// The truth.
     pub truth: f64,
-    /// The truth's own std error; 0 where it is known.
+    /// The std error of the truth; 0 if it is exact.
     pub truth_error: f64,
-    /// The rivals, in the order in which they were given.
+    /// The rivals, in the order given.
     pub rivals: Vec<Measured>,
 }
 
-/// A rival's place among those without bias.
+/// A rival's place in the ranking, which has no biased ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ranked<'a> {
     /// The rival.
     pub rival: &'a Measured,
-    /// 1 + the number of rivals that are really better. Those of rank 1 are not told apart from the best.
+    /// 1 + the number of rivals that are really better. Rivals of rank 1 cannot be distinguished from the
+    /// best.
     pub rank: usize,
-    /// Its efficiency as a part of the best one's; where both have no variance, the best one's time as a part
-    /// of its own.
+    /// Its efficiency divided by the best one's; if both have no variance, the best one's time divided by its
+    /// own.
     pub of_the_best: f64,
-    /// Whether the one before is really better; true of the first.
+    /// Whether the previous one is really better; true for the first.
     pub set_apart: bool,
 }
 
 impl Comparison {
-    /// The rivals without bias by their efficiency 1/(σ² t), the best first: those without variance by their
-    /// time, and those of infinite variance last.
+    /// The unbiased rivals by efficiency 1/(σ² t), the best first: first those without variance by their
+    /// time, last those of infinite variance.
     ///
-    /// One is *really better* than another if ln(efficiency) differs by more than three of the difference's
-    /// std errors, which are √(δσ²² + δt²) with the relative std errors of either's variance (by the spread
-    /// of the batches' variances) and time (of the median, by the quartiles). One with a heavy tail is never
-    /// really better, for its variance may be larger than it looks.
+    /// One is *really better* than another if its ln(efficiency) is larger by more than three std errors of
+    /// the difference. These follow from the relative std errors of variances (from the spread over batches)
+    /// and times (of a median, from the quartiles). A rival with a heavy tail is never really better, since
+    /// its variance may be larger than measured.
     ///
     /// ```
     /// use unbiased::from_fn;
@@ -79,9 +80,9 @@ impl Comparison {
         places
     }
 
-    /// The slope of a rival's error against the points that it takes, ½ Δln σ²/Δln points, from that of its
-    /// series that takes the fewest: −½ is what independent points have. None of that one itself, of one in
-    /// no series, and without a variance that is finite and more than rounding.
+    /// The slope of a rival's error against its number of points, ½ Δln σ²/Δln points, measured from the
+    /// rival of its series with the fewest points: −½ for independent points. None for that rival itself, for
+    /// one in no series, and if a variance is infinite or only rounding.
     pub fn slope(&self, rival: &Measured) -> Option<f64> {
         let ok = |one: &Measured| one.varies() && one.variance().is_finite() && one.evaluations > 0.0;
         let siblings = self.rivals.iter().filter(|other| other.series == rival.series && ok(other));
@@ -92,20 +93,20 @@ impl Comparison {
         })
     }
 
-    /// Where the most efficient of the unbiased ones overtakes a biased rival; None of any other.
+    /// When the most efficient unbiased rival overtakes a biased one; None for a rival that is not biased.
     pub fn crossing(&self, rival: &Measured) -> Option<Crossing> {
         let ranking = self.ranking();
         let best = ranking.iter().find(|place| place.rival.nature == Nature::Unbiased)?;
         (rival.nature == Nature::Biased).then(|| rival.overtaken_at(best.rival))
     }
 
-    /// The truth's size, and 1 where that is 0: what errors are relative to.
+    /// What errors are relative to: |truth|, or 1 if that is 0.
     pub fn scale(&self) -> f64 {
         if self.truth == 0.0 { 1.0 } else { self.truth.abs() }
     }
 }
 
-/// Whether `a` is more efficient than `b` by more than noise.
+/// Whether `a` is more efficient than `b` by more than the noise.
 fn is_really_better(a: &Measured, b: &Measured) -> bool {
     let infinite = |one: &Measured| one.nature == Nature::InfiniteVariance;
     if infinite(a) || infinite(b) {

@@ -1,11 +1,11 @@
-//! Speed against accuracy, drawn.
+//! The figure of a comparison.
 
 use crate::error::Result;
 use crate::numbers::two_digits;
 use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side, Width};
 use crate::trade::{Comparison, Measured, Nature};
 
-/// An ink, which has a dash of its own, and a marker a rival: no two are alike in grey.
+/// For each rival an ink, which implies a dash pattern, and a marker: all differ even in grey.
 const STYLES: [(Ink, Marker); 16] = [
     (Ink::Blue, Marker::Disc),
     (Ink::Vermilion, Marker::Square),
@@ -25,27 +25,23 @@ const STYLES: [(Ink, Marker); 16] = [
     (Ink::Purple, Marker::Square),
 ];
 
-/// Letters of a name that fit beside a panel.
+/// The most letters of a name that fit beside a panel.
 const LETTERS: usize = 20;
 
-/// Powers of ten that the axes of draws, work and time span, to the right of their beginning.
+/// The ratio of the ends of the axes of draws, work and time.
 const SPAN: f64 = 9e4;
 
-/// A rival with how it is drawn.
+/// A rival with its style.
 type Drawn<'a> = (&'a Measured, (Ink, Marker));
 
-/// The root mean square errors √(β² + σ² t/T) of the rivals against draws, against counted work and against
-/// seconds, and their efficiencies 1/(σ² t), which name the lines. An arrow in the panel of seconds spans the
-/// factor between the slowest and the fastest at the same error, where that difference is real and at least
-/// 2.
+/// The root mean square errors √(β² + σ² t/T) of the rivals against draws, work and seconds, and their
+/// efficiencies 1/(σ² t), in a panel that also names the lines. An arrow in the panel of seconds spans the
+/// factor between the slowest and the fastest at the same error, if it is real and at least 2.
 ///
-/// Work is evaluations where every rival counts them, else random numbers. What has no line, such as an
-/// infinite variance, is named all the same; where a bias is not seen, the line ends at the error down to
-/// which it is known. Sixteen rivals can be drawn: the description names those left out. `name` is the
-/// file's, `title` says what is compared.
-///
-/// # Errors
-/// If it cannot be drawn.
+/// Work is evaluations if every rival counts them, else random numbers. A rival without a line, for example
+/// of infinite variance, is named as well; if a bias is not seen, the line ends at the error below which the
+/// bias may dominate. At most sixteen rivals are drawn; the description names those left out. `name` is the
+/// file name, `title` says what is compared.
 ///
 /// ```
 /// use unbiased::from_fn;
@@ -59,6 +55,9 @@ type Drawn<'a> = (&'a Measured, (Ink, Marker));
 /// assert!(figure.svg().starts_with("<svg"));
 /// # Ok::<(), unbiased::Error>(())
 /// ```
+///
+/// # Errors
+/// If it cannot be drawn.
 pub fn comparison(name: &'static str, title: &str, comparison: &Comparison) -> Result<Figure> {
     let ranked: Vec<&Measured> = comparison.remarked().into_iter().map(|(rival, ..)| rival).collect();
     let drawn: Vec<Drawn<'_>> = ranked.iter().copied().zip(STYLES).collect();
@@ -116,8 +115,8 @@ pub fn comparison(name: &'static str, title: &str, comparison: &Comparison) -> R
     .draw()
 }
 
-/// The error after so much of `cost`, relative to the truth; NaN where a bias that is not seen may be as
-/// large.
+/// The error after `spent` units of `cost`, relative to the truth; NaN where a bias that is not seen may be
+/// as large.
 fn error(rival: &Measured, cost: &dyn Fn(&Measured) -> f64, spent: f64) -> f64 {
     let error = rival.rmse(rival.seconds * spent / cost(rival));
     let known = if rival.bias_seen() { 0.0 } else { rival.bias().abs() + 3.0 * rival.bias_error() };
@@ -142,8 +141,7 @@ fn panel([heading, unit, axis]: [&str; 3], lines: &[Drawn<'_>], cost: &dyn Fn(&M
     let mut panel = Panel::new(heading, Axis::log(unit, low, high), Axis::log(axis, bottom, top));
     for (index, (rival, (ink, marker))) in lines.iter().enumerate() {
         panel.curve(&rival.name, *ink, |spent| error(rival, cost, spent));
-        // a marker every power of ten, each rival's a little further, so that lines on top of each other show
-        // all of them
+        // one marker per power of ten, shifted from rival to rival so that all show on coinciding lines
         let first = 0.2 + 0.8 * (index as f64 + 0.5) / lines.len() as f64;
         let marked = (0..5).map(|power| low * 10f64.powf(f64::from(power) + first));
         let points: Vec<_> = marked
@@ -155,10 +153,10 @@ fn panel([heading, unit, axis]: [&str; 3], lines: &[Drawn<'_>], cost: &dyn Fn(&M
     panel
 }
 
-/// From the line of the slowest to that of the fastest, at an error that the fastest reaches early.
+/// Draws the arrow from the slowest rival's line to the fastest's, at an error that is reached early.
 fn speed_up(panel: &mut Panel, comparison: &Comparison) {
     let ranking = comparison.ranking();
-    // those that may have an infinite variance are no measure
+    // without those whose variance may be infinite
     let mut lines = ranking.iter().filter(|place| {
         let rival = place.rival;
         rival.nature == Nature::Unbiased && rival.varies() && !rival.heavy_tail
@@ -168,7 +166,7 @@ fn speed_up(panel: &mut Panel, comparison: &Comparison) {
     let factor = best.rival.efficiency() / worst.rival.efficiency();
     let at = panel.x.low * (panel.x.high / panel.x.low).powf(0.1);
     let error = error(best.rival, &|rival| rival.seconds, at);
-    // a shorter arrow would be all head
+    // a shorter arrow would be only a head
     if !(factor.is_finite() && factor >= 2.0 && (panel.y.low..panel.y.high).contains(&error)) {
         return;
     }
@@ -176,7 +174,7 @@ fn speed_up(panel: &mut Panel, comparison: &Comparison) {
     let (from, text) = if end <= panel.x.high {
         (end, format!("× {}", two_digits(factor)))
     } else {
-        // what the arrow shows of it, in a round number below
+        // the end is outside the panel: a lower bound, rounded down to a power of ten
         let shown = 10f64.powf((panel.x.high / at).log10().floor());
         (panel.x.high, format!("> × {}", two_digits(shown)))
     };
@@ -184,8 +182,7 @@ fn speed_up(panel: &mut Panel, comparison: &Comparison) {
     panel.label(Ink::Black, [(at * from).sqrt(), error], &text);
 }
 
-/// Efficiency as a part of the best one's, a row a rival, each with its line and marker: what names the
-/// lines.
+/// Efficiency divided by the best one's, one row per rival, each with its name, line and marker.
 fn efficiencies(drawn: &[Drawn<'_>], comparison: &Comparison) -> Panel {
     let ranking = comparison.ranking();
     let best =
@@ -197,9 +194,9 @@ fn efficiencies(drawn: &[Drawn<'_>], comparison: &Comparison) -> Panel {
     let parts: Vec<f64> = drawn.iter().filter_map(|(rival, _)| part(rival)).collect();
     let most = parts.iter().fold(1.0, |most: f64, part| most.max(*part));
     let least = parts.iter().fold(0.3 * most, |least: f64, part| least.min(*part));
-    // even the shortest line shows its dash
+    // so that even the shortest line shows its dash pattern
     let low = most * (least / most).powf(1.5);
-    // the names take so many points of 233, and what stands beside the longest line 66
+    // in points: the names take part of 233, and the text beside the longest line 66
     let widest =
         drawn.iter().map(|(rival, _)| shortened(&rival.name).chars().count()).max().unwrap_or(0) as f64;
     let width = 213.0 - 5.4 * widest.min(8.0) - 4.4 * (widest - 8.0).max(0.0);
@@ -207,7 +204,7 @@ fn efficiencies(drawn: &[Drawn<'_>], comparison: &Comparison) -> Panel {
     let row = |index: usize| (drawn.len() - index) as f64;
     let ticks = drawn.iter().enumerate().map(|(index, (rival, _))| (row(index), shortened(&rival.name)));
     let x = Axis::log("efficiency/best", low, high);
-    // three at most, where the lines are
+    // at most three ticks, where the lines are
     let all: Vec<_> = x.ticks.iter().filter(|(at, _)| *at <= most).cloned().collect();
     let x = x.with_ticks(all.iter().rev().step_by(all.len().div_ceil(3).max(1)).cloned());
     let y = Axis::linear("", 0.4, drawn.len() as f64 + 0.6).with_ticks(ticks);

@@ -1,4 +1,4 @@
-//! What was measured of one rival, and what follows from it.
+//! The measurements of one rival, and what follows from them.
 
 use serde::Serialize;
 
@@ -7,15 +7,16 @@ use super::batches::COUNT;
 use crate::doubt::Doubt;
 use crate::estimate::Estimate;
 
-/// What is known of an estimator beforehand.
+/// What is known of an estimator in advance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Nature {
-    /// Its mean is the quantity.
+    /// Its mean is the truth.
     Unbiased,
-    /// Its mean is something else.
+    /// Its mean is not the truth.
     Biased,
-    /// Its mean is the quantity, and its variance is infinite: no number of draws has an error bar to trust.
+    /// Its mean is the truth and its variance is infinite: its error bar is meaningless for any number of
+    /// draws.
     InfiniteVariance,
 }
 
@@ -35,7 +36,7 @@ impl Nature {
 pub enum Reach {
     /// After so many seconds.
     After(f64),
-    /// After so many seconds or later, or never: whether the bias is smaller than the error is not known.
+    /// After so many seconds or later, or never: it is not known whether the bias is smaller than the error.
     AtLeast(f64),
     /// Never: the bias is larger, or the variance is infinite.
     Never,
@@ -54,7 +55,7 @@ impl Reach {
 /// When one estimator becomes better than another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Crossing {
-    /// It is as good or better from the first second on.
+    /// It is as good or better from the start.
     FromTheStart,
     /// It is worse at first, and better from here on.
     At {
@@ -65,34 +66,35 @@ pub enum Crossing {
     },
     /// It is worse, and stays so.
     Never,
-    /// That depends on a bias that is not seen, or on the other one's own.
+    /// It depends on a bias that is not seen, or on the other one's bias.
     Unknown,
 }
 
-/// What was measured of one rival; variance, work and time are those of one draw, which is a whole replicate
-/// where draws come in replicates.
+/// The measurements of one rival. Variance, work and time are those of one draw, which may be a whole
+/// replicate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     /// Its name.
     pub name: String,
-    /// The series that it belongs to.
+    /// The series to which it belongs.
     pub series: Option<String>,
     /// What it was declared to be.
     pub nature: Nature,
-    /// What its draws gave.
+    /// The estimate from its draws.
     pub estimate: Estimate,
-    /// What is estimated.
+    /// The truth.
     pub truth: f64,
-    /// The truth's own std error; 0 where it is known.
+    /// The std error of the truth; 0 if it is exact.
     pub truth_error: f64,
     /// The standard error of the variance, from batches, in the truth's unit squared.
     pub variance_error: f64,
-    /// Whether a single draw of n holds more of the sum of squares Σ (X − X̄)² than ln²(1000 n)/n and 1/√n:
-    /// the variance hangs on a few draws, its error bar is not to be trusted, and it may be infinite.
+    /// Whether the fraction of the sum of squares Σ (X − X̄)² that comes from one of the n draws exceeds both
+    /// ln²(1000 n)/n and 1/√n: then the variance depends on a few draws, it may be infinite, and its error
+    /// bar cannot be trusted.
     ///
-    /// Of draws with tails no heavier than an exponential's, one set in a thousand is marked, or fewer; draws
-    /// whose range is less than 11 standard deviations never are. A tail of infinite variance is found the
-    /// more surely the more draws there are, and none is below 132. See `tests/trade.rs` for how often.
+    /// With tails no heavier than an exponential's, at most one set of draws in a thousand is marked; draws
+    /// with a range of less than 11 standard deviations never are. The more draws, the more likely an
+    /// infinite variance is found; below 132 draws none is. See `tests/trade.rs` for how often.
     pub heavy_tail: bool,
     /// Evaluations of the integrand (or rays, or vertices) that a draw takes.
     pub evaluations: f64,
@@ -100,12 +102,12 @@ pub struct Measured {
     pub random_numbers: f64,
     /// Seconds that a draw takes: the median of 17 batches, each of which is the median of up to 256 pieces.
     pub seconds: f64,
-    /// The quartiles of that.
+    /// The quartiles of the batches' times.
     pub seconds_range: [f64; 2],
 }
 
 impl Measured {
-    /// Why its variance is not to be trusted, if it is not.
+    /// Why its variance cannot be trusted, if so.
     pub fn doubt(&self) -> Option<Doubt> {
         match self.nature {
             Nature::InfiniteVariance => Some(Doubt::InfiniteVariance),
@@ -114,8 +116,7 @@ impl Measured {
         }
     }
 
-    /// The variance σ² of a draw, in the truth's unit squared: s² of the draws, and infinite where that was
-    /// declared, whatever theirs is.
+    /// The variance σ² of a draw, in the truth's unit squared: s² of the draws, or infinite if declared so.
     pub fn variance(&self) -> f64 {
         match self.nature {
             Nature::InfiniteVariance => f64::INFINITY,
@@ -123,13 +124,14 @@ impl Measured {
         }
     }
 
-    /// The bias β, in the truth's unit: mean − truth of a biased rival, 0 of an unbiased one. It is measured,
-    /// with an error of [`bias_error`](Self::bias_error).
+    /// The bias β, in the truth's unit: the measured mean − truth for a biased rival, with the std error
+    /// [`bias_error`](Self::bias_error); 0 for an unbiased one.
     pub fn bias(&self) -> f64 {
         if self.nature == Nature::Biased { self.estimate.mean() - self.truth } else { 0.0 }
     }
 
-    /// The standard error of the bias, √(σ²/n + τ²) with the truth's own std error τ; 0 of an unbiased rival.
+    /// The standard error of the bias, √(σ²/n + τ²), where τ is the std error of the truth; 0 for an unbiased
+    /// rival.
     pub fn bias_error(&self) -> f64 {
         if self.nature == Nature::Biased {
             self.estimate.std_error().unwrap_or(f64::INFINITY).hypot(self.truth_error)
@@ -138,8 +140,8 @@ impl Measured {
         }
     }
 
-    /// Whether the bias is more than three of its std errors, and than rounding: of 370 rivals whose bias is
-    /// 0, one looks like it. A bias that is not seen counts as none.
+    /// Whether the bias is more than three of its std errors, and more than rounding. That happens for 1 in
+    /// 370 rivals whose bias is 0. A bias that is not seen counts as 0.
     ///
     /// ```
     /// use unbiased::from_fn;
@@ -161,20 +163,20 @@ impl Measured {
         bias > REAL * self.bias_error() && bias > 8.0 * f64::EPSILON * self.truth.abs()
     }
 
-    /// The bias where it is seen, else 0.
+    /// The bias if it is seen, else 0.
     fn counted_bias(&self) -> f64 {
         if self.bias_seen() { self.bias() } else { 0.0 }
     }
 
-    /// The least and the largest |bias| that three std errors allow.
+    /// The smallest and the largest |bias| within three std errors.
     fn bias_range(&self) -> [f64; 2] {
         let (bias, reach) = (self.bias().abs(), REAL * self.bias_error());
         let least = if self.bias_seen() { bias - reach } else { 0.0 };
         [least, bias + reach]
     }
 
-    /// The efficiency 1/(σ² t), in 1/(unit² s); infinite where nothing varies, 0 where the variance is
-    /// infinite.
+    /// The efficiency 1/(σ² t), in 1/(unit² s), with the truth's unit; infinite if the draws do not vary, 0
+    /// if the variance is infinite.
     pub fn efficiency(&self) -> f64 {
         if self.varies() { (self.variance() * self.seconds).recip() } else { f64::INFINITY }
     }
@@ -184,7 +186,7 @@ impl Measured {
         self.variance().sqrt() > 8.0 * f64::EPSILON * self.estimate.mean().abs()
     }
 
-    /// What errors are relative to: the truth's size, and 1 where that is 0.
+    /// What errors are relative to: |truth|, or 1 if that is 0.
     pub fn scale(&self) -> f64 {
         if self.truth == 0.0 { 1.0 } else { self.truth.abs() }
     }
@@ -192,11 +194,11 @@ impl Measured {
     /// The standard error of ln seconds.
     pub(super) fn time_error(&self) -> f64 {
         let [low, high] = self.seconds_range;
-        // of a median of normal values, by their quartiles
+        // that of the median of normal values, from their quartiles
         1.253 * (high - low) / 1.349 / (COUNT as f64).sqrt() / self.seconds
     }
 
-    /// The standard error of ln efficiency, by those of variance and time.
+    /// The standard error of ln efficiency, from those of variance and time.
     pub(super) fn efficiency_error(&self) -> f64 {
         let of_variance = if self.variance() > 0.0 { self.variance_error / self.variance() } else { 0.0 };
         self.time_error().hypot(of_variance)
@@ -210,9 +212,8 @@ impl Measured {
         (self.variance() * self.seconds / seconds).sqrt().hypot(self.counted_bias())
     }
 
-    /// When the root mean square error comes down to `error` > 0, relative to the truth (absolute where the
-    /// truth is 0): after T = σ² t/(error² − β²) seconds on one core, but not before the first draw, or
-    /// replicate, is done.
+    /// When the root mean square error falls to `error` > 0, relative to the truth (absolute if the truth is
+    /// 0): after T = σ² t/(error² − β²) seconds on one core, but not before the first draw is done.
     pub fn seconds_to(&self, error: f64) -> Reach {
         let aim = error.abs() * self.scale();
         let [least, most] = self.bias_range();
@@ -227,8 +228,8 @@ impl Measured {
         }
     }
 
-    /// When a `rival` without bias overtakes this one: after T = (σ_r² t_r − σ² t)/β² seconds, if it ever
-    /// does. Of a rival that was declared biased itself this is [`Unknown`](Crossing::Unknown).
+    /// When an unbiased `rival` overtakes this one: after T = (σ_r² t_r − σ² t)/β² seconds, if ever. For a
+    /// `rival` that was declared biased itself it is [`Unknown`](Crossing::Unknown).
     pub fn overtaken_at(&self, rival: &Self) -> Crossing {
         let infinite = |one: &Self| one.nature == Nature::InfiniteVariance;
         let lead = rival.variance() * rival.seconds - self.variance() * self.seconds;

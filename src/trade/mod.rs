@@ -1,17 +1,15 @@
-//! Speed against accuracy: what a second buys.
+//! Speed against accuracy: which estimator has the smallest error for a given computing time.
 //!
-//! Rival estimators of one quantity differ in the variance of a draw and in the time that it takes. What
-//! counts is the product: after T seconds the std error of an estimator whose draws have variance σ² and take
-//! t seconds is √(σ² t/T), so its *efficiency* is 1/(σ² t) (Hammersley & Handscomb 1964, section 5.1;
-//! *Physically Based Rendering*, 4th ed., section 2.2), and the time to a given error is proportional to σ²
-//! t. [`Trade`] measures both for any set of rivals, side by side.
+//! Estimators of the same quantity (rivals) differ in the variance σ² of a draw and in its time t. The
+//! product counts: after T seconds the std error is √(σ² t/T), so the *efficiency* is 1/(σ² t), and the time
+//! to a given error is proportional to σ² t. [`Trade`] measures both for any set of rivals. (Hammersley &
+//! Handscomb 1964, section 5.1; *Physically Based Rendering*, 4th ed., section 2.2.)
 //!
-//! Draws that are not independent of each other, such as jittered or Sobol points, come in replicates: there
-//! a draw is a whole replicate, and its work is counted. A biased rival has a root mean square error √(β² +
-//! σ² t/T), which stops at its bias β: [`Measured::overtaken_at`] says when an unbiased one is better. The
-//! bias is measured, too, so it has an error bar: a bias within three of its std errors is *not seen*, and
-//! nothing is concluded from it. An infinite variance is never averaged away: an estimator that declares it
-//! has no efficiency, and one whose variance hangs on a few draws is marked.
+//! For jittered or Sobol points a draw is a whole replicate, with all of its work. A biased rival has a root
+//! mean square error √(β² + σ² t/T), which does not fall below its bias β: [`Measured::overtaken_at`] gives
+//! the time after which an unbiased one is better. The bias is measured, too, so it has an error bar: a bias
+//! within three of its std errors is *not seen*, and counts as 0. An estimator declared to have infinite
+//! variance has no efficiency, and one whose variance comes mostly from a few draws is marked.
 
 mod batches;
 mod comparison;
@@ -27,8 +25,8 @@ use crate::error::{Result, require};
 use crate::estimator::Estimator;
 use batches::Batches;
 
-/// Std errors within which a bias, or a difference between two rivals, may be noise: of 370 that are none,
-/// one lies beyond.
+/// A bias, or a difference between two rivals, counts as real if it is more than this many std errors: 1 in
+/// 370 that are 0 does.
 const REAL: f64 = 3.0;
 
 /// One of the estimators that are compared.
@@ -40,7 +38,7 @@ pub struct Rival<'a> {
 }
 
 impl<'a> Rival<'a> {
-    /// An unbiased estimator of finite variance, under the name that tables and figures give it.
+    /// An unbiased estimator of finite variance, with its name for tables and figures.
     ///
     /// ```
     /// use unbiased::from_fn;
@@ -53,15 +51,15 @@ impl<'a> Rival<'a> {
         Self { name: name.into(), series: None, estimator: Box::new(estimator), nature: Nature::Unbiased }
     }
 
-    /// The same, of which this is known. It decides what can be said of the rival: a
-    /// [`Biased`](Nature::Biased) one gets its bias measured and no rank, one of
-    /// [`InfiniteVariance`](Nature::InfiniteVariance) no efficiency and no time to any error.
+    /// Declares what is known of the estimator. For a [`Biased`](Nature::Biased) rival the bias is measured,
+    /// and it has no rank; one of [`InfiniteVariance`](Nature::InfiniteVariance) has no efficiency and
+    /// reaches no error.
     ///
     /// ```
     /// use unbiased::from_fn;
     /// use unbiased::trade::{Nature, Rival};
     ///
-    /// // ∫₀¹ x² dx without its ends
+    /// // ∫₀¹ x² dx with x clamped
     /// let clamped = from_fn(|rng| rng.uniform().clamp(0.1, 0.9).powi(2));
     /// let rival = Rival::new("clamped", clamped).nature(Nature::Biased);
     /// // ∫₀¹ 1/√x dx: E[1/x] is infinite
@@ -72,20 +70,20 @@ impl<'a> Rival<'a> {
         Self { nature, ..self }
     }
 
-    /// The same, as one of a series: rivals that differ only in how many points a draw takes, which each must
-    /// count as evaluations. [`Comparison::slope`] then says how fast the error falls with the points.
+    /// Makes it one of a series: rivals that differ only in the number of points per draw, counted as
+    /// evaluations. [`Comparison::slope`] then gives how fast the error falls with the points.
     pub fn series(self, series: impl Into<String>) -> Self {
         Self { series: Some(series.into()), ..self }
     }
 }
 
-/// A comparison to be made.
+/// The settings of a comparison.
 ///
 /// # Where the truth is not known
 /// The truth is needed for biases, and as the unit of relative errors; variance, time, efficiency and rank do
-/// not depend on it. In its place take a long run of an estimator that is known to be unbiased, with another
-/// seed, and say how well it is known: [`known_to`](Self::known_to) lets its std error count in that of every
-/// bias.
+/// not depend on it. Instead of the truth you can use a long run, with another seed, of an estimator that is
+/// known to be unbiased; pass its std error to [`known_to`](Self::known_to), which includes it in that of
+/// every bias.
 ///
 /// ```
 /// use unbiased::trade::{Nature, Rival, Trade};
@@ -98,7 +96,7 @@ impl<'a> Rival<'a> {
 ///     .known_to(truth.std_error().unwrap_or(0.0))?
 ///     .seconds_each(0.01)?
 ///     .compare(&[Rival::new("all", long), Rival::new("the middle", middle).nature(Nature::Biased)])?;
-/// // e^(−x) is convex: without its ends its mean is smaller
+/// // e^(−x) is convex, so clamping x makes the mean smaller
 /// assert!(found.rivals[1].bias_seen() && found.rivals[1].bias() < 0.0);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
@@ -111,8 +109,8 @@ pub struct Trade {
 }
 
 impl Trade {
-    /// A comparison of estimators of `truth`, a quarter of a second each. Where the truth is 0, all errors
-    /// are absolute.
+    /// A comparison of estimators of `truth`, with 0.25 s for each. If the truth is 0, all errors are
+    /// absolute.
     ///
     /// # Errors
     /// If the truth is not finite.
@@ -121,7 +119,7 @@ impl Trade {
         Ok(Self { seed, truth, truth_error: 0.0, seconds: 0.25 })
     }
 
-    /// The same with a truth that is itself an estimate, with this std error, in the truth's unit.
+    /// Sets the std error of the truth, if that is itself an estimate, in the truth's unit.
     ///
     /// # Errors
     /// If it is negative or not finite.
@@ -131,8 +129,8 @@ impl Trade {
     }
 
     /// Takes about this many seconds for each rival: a fifth to warm up, the rest for 17 batches of equally
-    /// many draws. A batch has at least two draws, so that rivals whose draws take more than a fortieth of
-    /// these seconds take longer: some 40 draws.
+    /// many draws. A batch has at least two draws, so a rival whose draws take more than 1/40 of this time
+    /// takes longer: about 40 draws.
     ///
     /// # Errors
     /// If they are not positive and finite.
@@ -141,12 +139,9 @@ impl Trade {
         Ok(Self { seconds: require("the time in seconds", seconds, ok, "positive and finite")?, ..self })
     }
 
-    /// Measures the rivals on one core, in turns, so that what disturbs the machine disturbs all alike. Batch
-    /// b of every rival draws from the stream (seed, b): the draws' values do not depend on the machine, only
-    /// their number does.
-    ///
-    /// # Errors
-    /// If a draw is NaN or infinite.
+    /// Measures the rivals on one core, in turns, so that other load on the machine affects all alike. Batch
+    /// b of every rival draws from the stream (seed, b): only the number of draws depends on the machine, not
+    /// their values.
     ///
     /// ```
     /// use unbiased::from_fn;
@@ -174,6 +169,9 @@ impl Trade {
     /// assert!((mirrored.variance() - exact).abs() <= 7.0 * mirrored.variance_error);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If a draw is NaN or infinite.
     pub fn compare(&self, rivals: &[Rival<'_>]) -> Result<Comparison> {
         let mut runs = Vec::new();
         for rival in rivals {

@@ -1,4 +1,4 @@
-//! A comparison as a table for people, and as CSV and JSON for programs, out of one list of columns.
+//! A comparison as a table for people, and as CSV and JSON for programs.
 
 use std::fmt;
 
@@ -10,20 +10,20 @@ use super::measured::{Crossing, Measured, Nature, Reach};
 use crate::doubt::Doubt;
 use crate::numbers::{duration, plus_minus, two_digits, unit};
 
-/// The errors to which a table gives the times.
+/// The errors for which a table gives the times.
 const ERRORS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
 impl Comparison {
-    /// What the columns of the table are, in a paragraph.
+    /// An explanation of the table's columns.
     pub const EXPLAINED: &str = "σ is the standard deviation of a draw (relative to the truth), the next \
-                                 column what a draw counts, its time the median of 17 batches ± half the \
-                                 distance of their quartiles. \
-        Efficiency is 1/(σ² × time) as a part of the best one's; rank is 1 + the number of rivals that are \
+        column the work of a draw, its time the median of 17 batches ± half the difference of their \
+        quartiles. \
+        Efficiency is 1/(σ² × time) divided by the best one's; rank is 1 + the number of rivals that are \
         better by more than three std errors of the difference, so that those of rank 1 are not told apart \
         from the best. \
-        The columns “to …” give the seconds on one core until the root mean square error is so much of the \
-        truth, at least those of one draw, which for points that come in replicates is a whole replicate; \
-        with “≥” it is not known whether a bias ends the fall before.";
+        The columns “to …” give the time on one core until the root mean square error is this fraction of \
+        the truth, at least the time of one draw, which for jittered and Sobol points is a whole replicate; \
+        “≥” means that a bias too small to be seen may prevent it.";
 
     /// The names of the table's columns.
     pub fn columns(&self) -> Vec<&'static str> {
@@ -38,7 +38,7 @@ impl Comparison {
         columns
     }
 
-    /// The table's cells, a row each: the rivals without bias by rank, then the biased ones.
+    /// The table's cells, one row per rival: the unbiased ones by rank, then the biased ones.
     pub fn rows(&self) -> Vec<Vec<String>> {
         let rows = self.remarked().into_iter().map(|(rival, place, remark)| {
             let sigma =
@@ -55,7 +55,7 @@ impl Comparison {
         rows.collect()
     }
 
-    /// What is counted as work: evaluations where every rival counts them, else random numbers.
+    /// The unit of work: evaluations if every rival counts them, else random numbers.
     pub fn unit_of_work(&self) -> &'static str {
         if self.counts_evaluations() { "evaluations" } else { "random numbers" }
     }
@@ -69,7 +69,7 @@ impl Comparison {
         self.rivals.iter().all(|rival| rival.evaluations > 0.0)
     }
 
-    /// The rivals without bias by rank, then the biased ones, each with what is to be said of it.
+    /// The unbiased rivals by rank, then the biased ones, each with its remarks.
     pub(crate) fn remarked(&self) -> Vec<(&Measured, Option<Ranked<'_>>, String)> {
         let ranked = self.ranking().into_iter().map(|place| (place.rival, Some(place)));
         let biased =
@@ -117,11 +117,11 @@ impl Comparison {
         said
     }
 
-    /// A line a rival, with the columns' names first, for other programs.
+    /// The comparison as CSV for other programs: the columns' names, then one line per rival.
     ///
-    /// Numbers are in full, in the truth's unit and in seconds; `inf` is what is infinite or never reached; a
-    /// cell is empty where nothing is known or nothing applies. `nature` is `unbiased`, `biased` or
-    /// `infinite_variance`; `crossing`, where the best unbiased rival overtakes a biased one, is `at`,
+    /// Numbers have all digits, in the truth's unit and in seconds; `inf` means infinite or never reached; a
+    /// cell is empty if the value is unknown or does not apply. `nature` is `unbiased`, `biased` or
+    /// `infinite_variance`; `crossing`, when the best unbiased rival overtakes a biased one, is `at`,
     /// `from_the_start`, `never` or `unknown`.
     ///
     /// ```
@@ -146,7 +146,7 @@ impl Comparison {
         csv
     }
 
-    /// The cells of CSV and JSON, a record a rival, in the order in which they were given.
+    /// The cells of CSV and JSON, one record per rival, in the order given.
     fn records(&self) -> Vec<Record<'_>> {
         let places = self.ranking();
         let place = |rival: &Measured| places.iter().find(|place| std::ptr::eq(place.rival, rival));
@@ -189,14 +189,14 @@ const NAMES: [&str; 31] = [
     "crossing_error",
 ];
 
-/// A cell a column.
+/// One cell per column.
 type Record<'a> = [Cell<'a>; 31];
 
 fn record<'a>(comparison: &Comparison, rival: &'a Measured, place: Option<&Ranked<'_>>) -> Record<'a> {
     let finite = rival.nature != Nature::InfiniteVariance;
     let biased = rival.nature == Nature::Biased;
     let number = |value: f64| if value.is_nan() { Cell::Nothing } else { Cell::Number(value) };
-    // an error bar made of a variance that is infinite is none
+    // with an infinite variance the error bar is infinite, too
     let with_variance = |value: f64| number(if finite { value } else { f64::INFINITY });
     let of_bias = |cell: Cell<'a>| if biased { cell } else { Cell::Nothing };
     let of_place = |cell: fn(&Ranked<'_>) -> Cell<'a>| place.map_or(Cell::Nothing, cell);
@@ -258,7 +258,7 @@ enum Cell<'a> {
     Nothing,
 }
 
-/// As CSV has it (RFC 4180).
+/// As a CSV field (RFC 4180).
 impl fmt::Display for Cell<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -286,8 +286,8 @@ impl Serialize for Cell<'_> {
     }
 }
 
-/// As `seed`, `truth`, `truth_error` and `rivals`, each of which has the columns of [`Comparison::csv`]. JSON
-/// has no infinity: there it is null, too.
+/// The fields are `seed`, `truth`, `truth_error` and `rivals`; each rival has the columns of
+/// [`Comparison::csv`]. In JSON, which has no infinity, infinite values are null, as are empty cells.
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut fields = serializer.serialize_struct("Comparison", 4)?;
@@ -323,7 +323,7 @@ impl Serialize for Fields<'_> {
     }
 }
 
-/// A table, columns aligned, with what they are below it.
+/// A table with aligned columns, and an explanation of them below it.
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let heading = self.columns().into_iter().map(str::to_owned).collect();
@@ -352,7 +352,7 @@ impl fmt::Display for Reach {
     }
 }
 
-/// The time of a draw, three digits, with half the distance of its quartiles.
+/// The time of a draw to three digits ± half the difference of its quartiles.
 fn time(rival: &Measured) -> String {
     let (factor, unit) = unit(rival.seconds);
     let [low, high] = rival.seconds_range;
