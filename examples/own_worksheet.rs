@@ -4,10 +4,10 @@
 //! cargo run --release --example own_worksheet -- --edition both --out my_sheet
 //! ```
 //!
-//! A question is texts and numbers, `Question`, and a function that answers it. What stands between « and »
-//! in its texts is a formula in its letters, whose value is put there: so `--B.1.length 0.5` changes
-//! statement, closed form, wrong answers and estimate at once, and `--variant NAME` gives a student numbers
-//! of their own.
+//! A question consists of texts and numbers, `Question`, and a function that answers it. A part of a text
+//! between « and » is a formula in the question's letters, and is replaced by its value. So `--B.1.length
+//! 0.5` changes statement, closed form, wrong answers and estimate at once, and `--variant NAME` gives each
+//! student their own numbers.
 
 use std::f64::consts::{FRAC_1_PI, PI};
 use std::process::ExitCode;
@@ -22,7 +22,7 @@ mod q5_2;
 const LENGTH: Parameter = Parameter {
     name: "length",
     default: Value::Number(0.8),
-    help: "the needle's length in lines' distances, in (0, 1]",
+    help: "the needle's length in units of the lines' distance, in (0, 1]",
     letter: Some(Letter {
         names: &["l"],
         value: |options| {
@@ -86,7 +86,7 @@ const ANGLE: Parameter = Parameter {
     }),
 };
 
-/// sin² α, of which the grammar of formulas has no sine.
+/// sin² α as a letter, since formulas cannot contain a sine.
 const SIN_SQUARED: Letter = Letter {
     names: &["s"],
     value: |options| Ok(options.number("angle").to_radians().sin().powi(2)),

@@ -1,7 +1,7 @@
 //! Question 3.3: how does the reflected radiance depend on ω_o and on ρ?
 //!
-//! Not at all, and in proportion. Half the albedo gives half the radiance; and the BRDF ρ/π, which is all
-//! that could know ω_o, does not.
+//! It does not depend on ω_o, and is proportional to ρ: half the albedo gives half the radiance. Only the
+//! BRDF could depend on ω_o, and ρ/π does not.
 
 use unbiased::Result;
 use unbiased::lambertian::Lambertian;

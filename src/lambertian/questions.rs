@@ -48,15 +48,15 @@ pub(crate) const QUESTIONS: &[Question] = &[
                     emitted plus reflected radiance, \
                     L_o = L_e + L_r with L_r = ∫ f_r L_i cos θ dω over the hemisphere. What is the cube's \
                     emitted radiance L_e?",
-        hint: "Who makes the light that leaves a piece of wood?",
+        hint: "Does wood emit light?",
         formula: "L_e = 0",
         latex: &[
             r"L_o(\mathbf p, \omega_o)
               = L_e(\mathbf p, \omega_o) + \int_{H^2} f_r\, L_i(\mathbf p, \omega)\cos\theta\,d\omega",
             r"L_e = 0",
         ],
-        answer: "Wood is no lamp: all light that leaves the cube came from elsewhere, so its outgoing \
-                 radiance is the reflected one.",
+        answer: "Wood does not emit light: all light that leaves the cube came from elsewhere, so its \
+                 outgoing radiance is the reflected radiance.",
         numbers: &[Number {
             part: "",
             symbol: "L_e",
@@ -135,9 +135,9 @@ pub(crate) const QUESTIONS: &[Question] = &[
         hint: "Look for ω_o in the BRDF ρ/π, and for ρ in the answer to 3.2.",
         formula: "L_r does not depend on ω_o, and is proportional to ρ in [0, 1]",
         latex: &[r"\frac{\partial L_r}{\partial \omega_o} = 0, \qquad L_r \propto \rho"],
-        answer: "The BRDF ρ/π knows no ω_o: that is what makes the surface Lambertian, equally bright from \
-                 every side. ρ, the albedo, is the share of the \
-                 incoming power that is reflected; above 1 the surface would create energy.",
+        answer: "The BRDF ρ/π does not depend on ω_o: that is what makes the surface Lambertian, equally \
+                 bright from every side. ρ, the albedo, is the share of the incoming power that is \
+                 reflected; above 1 the surface would create energy.",
         numbers: &[],
         wrong: &[
             Wrong {
@@ -221,15 +221,15 @@ pub(crate) const QUESTIONS: &[Question] = &[
         title: "Cosine-weighted directions",
         statement: "In practice directions are drawn with density p(ω) = cos θ/π. What is the estimator for \
                     n directions now?",
-        hint: "Put the new density under the same integrand, and cancel on paper what cancels.",
+        hint: "Divide the same integrand by the new density, and simplify.",
         formula: "L̂_r = ρ/n Σ L_i(ω_j)",
         latex: &[r"\hat L_r
               = \frac1n \sum_{j=1}^n \frac{\frac{\rho}{\pi}
               L_i(\omega_j)\cos\theta_j}{\frac{\cos\theta_j}{\pi}}
               = \frac{\rho}{n}\sum_{j=1}^n L_i(\omega_j)"],
-        answer: "The cosine and the π cancel, on paper: at cos θ → 0 the quotient of the two would be 0/0. \
-                 The directions must be drawn from the new density, \
-                 cos θ = √(1 − U); changing the formula alone is the classic mistake.",
+        answer: "The cosine and the π cancel. Simplify before computing: at cos θ = 0 the quotient would be \
+                 0/0. The directions must be drawn from the new density, cos θ = √(1 − U); changing the \
+                 formula alone is the classic mistake.",
         numbers: &[Number {
             part: "",
             symbol: "c",
@@ -295,7 +295,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
             Wrong { answer: "it is always better", slip: "not where the light comes from near the horizon" },
             Wrong {
                 answer: "it avoids wasted samples, so it is less biased",
-                slip: "both are unbiased; waste is variance",
+                slip: "both are unbiased; wasted samples increase the variance",
             },
         ],
         on_the_original: Some(

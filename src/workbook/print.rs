@@ -15,7 +15,7 @@ use crate::numbers::{plus_minus, rounded, shortened, std_errors};
 use crate::plot::Edition;
 use crate::run::Part;
 
-/// Prints the question, before anything is known of its rows.
+/// Prints the question, before its rows are computed.
 pub(super) fn heading(question: &'static Question, options: &Options, voice: Voice) -> Result<()> {
     let stated = question.at(options)?;
     if unsaid(options) {
@@ -37,7 +37,7 @@ pub(super) fn heading(question: &'static Question, options: &Options, voice: Voi
     put(&text)
 }
 
-/// What is being done, in a line.
+/// Prints the question's number and title on one line.
 pub(super) fn title(id: &str, title: &str, options: &Options) -> Result<()> {
     if unsaid(options) { Ok(()) } else { put(&format!("{}\n", format!("{id}  {title}").trim_end())) }
 }
@@ -51,7 +51,7 @@ pub(super) fn row(answer: &Answer, options: &Options) -> Result<()> {
     put(&format!("\n{}", solution(answer, options)))
 }
 
-/// Saves the figures, and prints what follows the rows; for programs, the rows.
+/// Saves the figures, and prints what follows the rows. With --json, prints the rows.
 pub(super) fn ending(
     question: &'static Question,
     answers: &[Answer],
@@ -70,7 +70,7 @@ pub(super) fn ending(
         for figure in answer.figures(options.edition) {
             paths.extend(figure.save(&options.out)?);
         }
-        // in the student edition one row a question will do, and those with something to mark
+        // in the student edition, print one row per question, and those with a figure to draw in
         if options.edition == Edition::Solution || rows.is_empty() || !paths.is_empty() {
             rows.push((answer, paths));
         }
@@ -110,7 +110,7 @@ fn figure_line(path: &Path) -> String {
     format!("    figure       {}\n", path.display())
 }
 
-/// The worksheet in a line a question, once all of it is done.
+/// Prints one line per question, once the whole worksheet is done.
 pub(super) fn summary(answered: &[(&Question, Vec<Answer>)], options: &Options) -> Result<()> {
     if unsaid(options) || options.edition == Edition::Student {
         return Ok(());
@@ -149,7 +149,7 @@ fn besides(rows: &[Answer]) -> String {
     counts.iter().map(|(word, count)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
 }
 
-/// Saves an appendix's figures, and prints it unless it is not `wanted`.
+/// Saves an appendix's figures, and prints it if it is `wanted`.
 pub(super) fn appendix(appendix: &Appendix, wanted: bool, options: &Options) -> Result<()> {
     let mut paths = Vec::new();
     for figure in &appendix.figures {
@@ -160,7 +160,7 @@ pub(super) fn appendix(appendix: &Appendix, wanted: bool, options: &Options) -> 
     }
     if options.json {
         let print = |(index, record)| {
-            // the figures belong to all of it, and are named once
+            // the figures belong to the whole appendix, and are listed once
             let figures = if index == 0 { &paths[..] } else { &[] };
             writeln!(io::stdout(), "{}", serde_json::to_string(&Row::of(record, figures))?)
         };
@@ -182,22 +182,22 @@ fn svgs(paths: &[PathBuf]) -> impl Iterator<Item = &PathBuf> {
     paths.iter().filter(|path| path.extension().is_some_and(|ending| ending == "svg"))
 }
 
-/// A last line of the worksheet: where a page is.
+/// Prints where a page is.
 pub(super) fn page(path: &Path, options: &Options) -> Result<()> {
     if unsaid(options) { Ok(()) } else { put(&format!("\nPage: {}\n", path.display())) }
 }
 
-/// A line for people.
+/// Prints a line of text.
 pub(super) fn line(text: &str) -> Result<()> {
     put(&format!("{text}\n"))
 }
 
-/// Whether nothing is said to people.
+/// Whether no text for people is printed.
 fn unsaid(options: &Options) -> bool {
     options.json || options.quiet
 }
 
-/// A reader that has seen enough is no error; a full disk is.
+/// A closed pipe is no error, as the reader has seen enough; a full disk is one.
 pub(super) fn until_the_pipe_closes(error: io::Error) -> Result<()> {
     match error.kind() {
         io::ErrorKind::BrokenPipe => Ok(()),
@@ -241,7 +241,7 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Nothing of the answer, and a name that does not tell it.
+    /// The row without the answer, and with a title that does not give it away.
     fn untold(self, stated: &'a Stated) -> Self {
         Self {
             what: &stated.title,
@@ -321,7 +321,7 @@ fn cost(answer: &Answer) -> String {
     text + &format!(", {:.3} s", answer.seconds().unwrap_or_default())
 }
 
-/// What a row says that did not reach the error asked for.
+/// The remark for a row that did not reach the error asked for.
 pub(super) fn cut_short(answer: &Answer) -> Option<String> {
     let (shortfall, reached) = (answer.shortfall()?, answer.estimate()?.std_error()?);
     Some(format!(
@@ -344,7 +344,7 @@ fn paragraph(text: &str) -> String {
     labelled("    ", text, width())
 }
 
-/// Writes to standard output, at once.
+/// Writes to standard output and flushes.
 fn put(text: &str) -> Result<()> {
     let mut out = io::stdout().lock();
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).or_else(until_the_pipe_closes)
@@ -358,7 +358,7 @@ pub(super) fn hints(questions: &[&'static Question], options: &Options) -> Resul
     put(&questions.iter().map(hint).collect::<Result<String>>()?)
 }
 
-/// Help in lines that fit; what an option does stands in a column of its own.
+/// Folds the help to the width of the terminal; descriptions are in a column of their own.
 fn options_folded(text: &str) -> String {
     let lines = text.lines().map(|line| match line.char_indices().nth(OPTION) {
         Some((at, _)) if line.starts_with("    --") => {
@@ -373,7 +373,7 @@ fn options_folded(text: &str) -> String {
 /// The width of the column of options in the help.
 const OPTION: usize = 25;
 
-/// `--help` of an example beside the questions
+/// `--help` of an appendix's example
 pub(super) fn help_beside(beside: &Beside) -> Result<()> {
     let mut text = format!("{}\n\nOptions\n", beside.about);
     if let Some(seconds) = beside.seconds {
@@ -393,8 +393,8 @@ pub(super) fn help(questions: &[&'static Question]) -> Result<()> {
         let stated = question.at(&Options::default())?;
         text += &format!("{}  {}\n\n{}\n\n", question.id, stated.title, stated.statement);
     } else {
-        text += "The worksheet: every question in closed form, by an estimator with its error bar, and in a \
-                 picture.\n\n";
+        text += "The worksheet: every question answered in closed form, by an estimator with its error bar, and by a \
+                 figure.\n\n";
     }
     text += "Options
     --draws N            draws of every estimator (default: each question's own number)
@@ -410,11 +410,11 @@ pub(super) fn help(questions: &[&'static Question]) -> Result<()> {
     --json               one JSON object a line
     --verbose            what every row took: draws, random numbers, evaluations, seconds
     --edition NAME       student, solution or both (solution)
-    --variant NAME       numbers of a variant's own: any text names one
+    --variant NAME       the numbers of this variant; any text is a name
     --variants FILE      a worksheet for each name in a file, one a line, and one key (with worksheet)
     --shard K/N          only shard K of N of every run, for --merge (with --json)
     --merge FILE...      puts every run together from what its shards printed
-    --hint               a nudge that does not tell the answer
+    --hint               a hint that does not give the answer away
 ";
     for question in questions {
         for parameter in question.parameters {

@@ -1,16 +1,16 @@
-//! Numbers of each student's own: a name, any text, chooses the parameters of every question, the same on
-//! every machine.
+//! Variants, which give each student numbers of their own: a name, which is any text, determines the
+//! parameters of every question, the same on every machine.
 //!
-//! A variant is fair. Its numbers are short; none hides a mistake (λ = 1, p_rr = ½, a square, L_i = 1); and
-//! every wrong answer is at least 5 % off the right one, and every classic wrong answer at least 5 % off
-//! every other.
+//! A variant is fair: its numbers are short; none hides a mistake (λ = 1, p_rr = ½, a square, L_i = 1); every
+//! wrong answer differs by at least 5 % from the right one, and every classic wrong answer by at least 5 %
+//! from every other one.
 
 use super::options::Options;
 use super::{Number, Question, Value, questions};
 use crate::error::{Error, Result};
 use crate::stream::mix;
 
-/// The values that a parameter may have in a variant. What is not listed stays as on the sheet.
+/// The values that a parameter may take in a variant. Parameters not listed keep the sheet's value.
 fn values(name: &str) -> &'static [f64] {
     match name {
         "rate" => &[0.2, 0.25, 0.3, 0.4, 0.6, 0.75, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0],
@@ -31,14 +31,14 @@ fn values(name: &str) -> &'static [f64] {
     }
 }
 
-/// Tries until one is fair; it takes a few.
+/// The most tries to find a fair variant; a few are enough.
 const TRIES: u64 = 10_000;
 
-/// What two answers differ by at least, relatively.
+/// The smallest relative difference of two answers.
 const APART: f64 = 0.05;
 
 impl Options {
-    /// The parameters of a variant for these questions, and what is set already on top of them.
+    /// The parameters of a variant for these questions; options that are already set take precedence.
     ///
     /// # Errors
     /// If the name is empty.
@@ -84,7 +84,7 @@ impl Options {
             let mut word = mix(seed ^ mix(attempt));
             for (parameter, all) in &free {
                 word = mix(word);
-                // fewer than 20 of 2⁶⁴: as good as uniform
+                // the remainder's bias is below 20/2⁶⁴, which is negligible
                 let value = all.get((word % all.len() as u64) as usize).copied().unwrap_or(f64::NAN);
                 options.set(question, parameter, &value.to_string())?;
             }
@@ -97,7 +97,7 @@ impl Options {
     }
 }
 
-/// Whether no answer to the question is taken for another, and all of its texts can be written.
+/// Whether no answer to the question can be taken for another, and all of its texts can be written.
 pub(super) fn is_fair(question: &'static Question, options: &Options) -> bool {
     question.at(options).is_ok()
         && question.numbers.iter().all(|number| tells_apart(question, number, options))
@@ -106,7 +106,7 @@ pub(super) fn is_fair(question: &'static Question, options: &Options) -> bool {
 fn tells_apart(question: &'static Question, number: &Number, options: &Options) -> bool {
     let values = |formula: &str| question.evaluate(formula, options).unwrap_or_default();
     let truths = values(number.formula);
-    // a right answer of 0 differs from all that is not
+    // a right answer of 0 differs from every other number
     let differ = |a: f64, b: f64| (a - b).abs() >= APART * a.abs().max(b.abs()) && a != b;
     let wrong: Vec<_> = number.slips.iter().map(|slip| (slip, values(slip.answer))).collect();
     let right_is_alone = wrong
@@ -120,10 +120,10 @@ fn tells_apart(question: &'static Question, number: &Number, options: &Options) 
         })
 }
 
-/// Names of variants, one a line: blank lines left out.
+/// The names of variants, one per line; blank lines are skipped.
 ///
 /// # Errors
-/// If the text is not UTF-8, there is no name, or two names would be one folder.
+/// If the text is not UTF-8, there is no name, or two names would give the same folder.
 pub(super) fn names(bytes: &[u8], file: &str) -> Result<Vec<String>> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let text =
@@ -137,21 +137,21 @@ pub(super) fn names(bytes: &[u8], file: &str) -> Result<Vec<String>> {
     for name in &names {
         if let Some(other) = folders.insert(folder(name).to_lowercase(), name) {
             return Err(Error::Usage(format!(
-                "{file}: “{other}” and “{name}” would have one folder; change one of them"
+                "{file}: “{other}” and “{name}” would share a folder; change one of them"
             )));
         }
     }
     Ok(names)
 }
 
-/// A name as that of a folder on any system.
+/// A name as a folder name that is valid on any system.
 pub(super) fn folder(name: &str) -> String {
     let plain = |c: char| if c.is_alphanumeric() || "-_+ ".contains(c) { c } else { '_' };
     let folder: String = name.trim().chars().map(plain).take(100).collect();
     folder.trim().replace(' ', "_")
 }
 
-/// All questions' numbers in a variant: the rows of a key, as question, what and truth.
+/// All questions' numbers in a variant: the rows of a key, as question, description and truth.
 pub(super) fn key(options: &Options) -> Result<Vec<[String; 4]>> {
     let mut rows = Vec::new();
     for question in questions() {
@@ -175,7 +175,7 @@ mod tests {
         assert_eq!(read("\u{feff}Ada\r\n\n  Bo Li \n".as_bytes()), Ok(vec!["Ada".into(), "Bo Li".into()]));
         assert_eq!(read(b"\n \n"), Err("f holds no names, one a line".into()));
         assert_eq!(read(b"\xff"), Err("f is not text in UTF-8".into()));
-        let twice = "f: “A/B” and “a_b” would have one folder; change one of them";
+        let twice = "f: “A/B” and “a_b” would share a folder; change one of them";
         assert_eq!(read(b"A/B\na_b\n"), Err(twice.into()));
         assert_eq!(folder("../é x"), "___é_x");
     }

@@ -8,7 +8,7 @@ use super::programs::Language;
 use crate::error::{Error, Result};
 use crate::run::Budget;
 
-/// What is to be judged or told.
+/// What is to be judged or printed.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Deed {
     Mine,
@@ -139,13 +139,13 @@ impl Wish {
     }
 }
 
-/// The one thing that is to be done; a class has answers, draws or both.
+/// The one action asked for; for a class, answers, draws or both.
 fn one_of(deeds: Vec<(&'static str, Deed)>, about_estimator: Option<&str>) -> Result<Deed> {
     let mut given = None::<(&'static str, Deed)>;
     for (name, deed) in deeds {
         given = Some(match (given, deed) {
             (None, deed) => (name, deed),
-            // of the same option the last one counts
+            // if the same option is given again, the last one counts
             (Some((before, _)), deed) if before == name => (name, deed),
             (Some((_, Deed::Class { answers, draws })), Deed::Class { answers: more, draws: others }) => {
                 (name, Deed::Class { answers: more.or(answers), draws: others.or(draws) })
