@@ -138,9 +138,6 @@ impl Hemisphere {
 
     /// The direction for the uniform numbers u and v. u = 0 is the normal and u = 1 the horizon.
     ///
-    /// # Errors
-    /// If u or v is not in \[0, 1\].
-    ///
     /// ```
     /// use unbiased::lambertian::hemisphere::Hemisphere;
     ///
@@ -149,6 +146,9 @@ impl Hemisphere {
     /// assert_eq!(Hemisphere::Cosine.uniforms_of(&direction)?, [0.75, 0.5]);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If u or v is not in \[0, 1\].
     pub fn direction_of(self, u: f64, v: f64) -> Result<Direction> {
         require("the uniform number u", u, (0.0..=1.0).contains(&u), "in [0, 1]")?;
         require("the uniform number v", v, (0.0..=1.0).contains(&v), "in [0, 1]")?;

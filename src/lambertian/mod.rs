@@ -48,14 +48,14 @@ pub struct Lambertian {
 impl Lambertian {
     /// A surface of albedo ρ.
     ///
-    /// # Errors
-    /// If ρ is not between 0 and 1: above 1 the surface would create energy.
-    ///
     /// ```
     /// let error = unbiased::lambertian::Lambertian::new(1.2).unwrap_err();
     /// let sentence = "the albedo ρ must be between 0 and 1 (above 1 it would create energy), not 1.2";
     /// assert_eq!(error.to_string(), sentence);
     /// ```
+    ///
+    /// # Errors
+    /// If ρ is not between 0 and 1: above 1 the surface would create energy.
     pub fn new(albedo: f64) -> Result<Self> {
         let ok = (0.0..=1.0).contains(&albedo);
         let allowed = "between 0 and 1 (above 1 it would create energy)";

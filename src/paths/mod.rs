@@ -180,11 +180,6 @@ impl Paths {
     /// Radiances are scaled, so any size that a scene allows will do. What cannot be scaled is the ratio of
     /// the strongest and the weakest contribution.
     ///
-    /// # Errors
-    /// If a path's throughput could leave the range of `f32`: if the smallest albedo above 0, to the power of
-    /// the smallest number of bounces that counts (two, if fewer count and two may), is below 1e-25; or if
-    /// the faces emit less than 1e-10 of L_e A/π, or of L_e if the light is found by chance.
-    ///
     /// ```
     /// use unbiased::paths::room::{BoxRoom, Scene};
     /// use unbiased::lambertian::hemisphere::Hemisphere;
@@ -197,6 +192,11 @@ impl Paths {
     /// assert!(found.z(0.2728543591976926).unwrap().abs() < 5.0);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If a path's throughput could leave the range of `f32`: if the smallest albedo above 0, to the power of
+    /// the smallest number of bounces that counts (two, if fewer count and two may), is below 1e-25; or if
+    /// the faces emit less than 1e-10 of L_e A/π, or of L_e if the light is found by chance.
     pub fn in_f32(self) -> Result<PathsF32> {
         let scene = self.room.scene();
         let albedos = [scene.wall_albedo, scene.cube_albedo].into_iter().filter(|albedo| *albedo > 0.0);

@@ -69,10 +69,6 @@ impl Rectangle {
 
     /// The rectangle of all (x, y) with a ≤ x ≤ b and c ≤ y ≤ d.
     ///
-    /// # Errors
-    /// If an end is not finite, a ≥ b, c ≥ d, or the width, the height, the area or 1/area is outside `f64`'s
-    /// normal range, where digits are lost.
-    ///
     /// ```
     /// use unbiased::rectangle::Rectangle;
     ///
@@ -81,6 +77,10 @@ impl Rectangle {
     /// assert_eq!(error.to_string(), "the end b of [a, b] must be finite and above a, not -2");
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If an end is not finite, a ≥ b, c ≥ d, or the width, the height, the area or 1/area is outside `f64`'s
+    /// normal range, where digits are lost.
     pub fn new([a, b]: [f64; 2], [c, d]: [f64; 2]) -> Result<Self> {
         require("the end a of [a, b]", a, a.is_finite(), "finite")?;
         require("the end b of [a, b]", b, b > a && b.is_finite(), "finite and above a")?;

@@ -15,9 +15,6 @@ impl Rectangle {
     /// [`Integrand::all_pairs_variance`](super::Integrand::all_pairs_variance)). The n independent pairs have
     /// A² σ²/n, which is never less. The two are equal for f(x, y) = g(x) + h(y), as then σ² = σ_x² + σ_y².
     ///
-    /// # Errors
-    /// If n is not from 1 to 2¹⁶.
-    ///
     /// ```
     /// use unbiased::{Budget, Run, rectangle::Rectangle};
     ///
@@ -27,6 +24,9 @@ impl Rectangle {
     /// assert_eq!(outcome.cost.evaluations, 1000 * 32 * 32);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If n is not from 1 to 2¹⁶.
     pub fn all_pairs<F: Fn(f64, f64) -> f64 + Sync>(self, f: F, n: u64) -> Result<AllPairs<F>> {
         // a draw is 2³² evaluations at most
         let ok = (1..=1 << 16).contains(&n);
@@ -48,9 +48,6 @@ impl Rectangle {
     /// The estimator A/n Σ f over a scrambled Sobol set of n points: [`sobol`] points for
     /// [`independent`](Self::independent).
     ///
-    /// # Errors
-    /// If n is not from 1 to 2¹⁶, after which the sequence would repeat.
-    ///
     /// ```
     /// use unbiased::{Budget, estimate, rectangle::Rectangle};
     ///
@@ -60,6 +57,9 @@ impl Rectangle {
     /// assert!(estimate.std_error().unwrap() < 2e-4); // 1024 × 100 independent points: 0.012
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If n is not from 1 to 2¹⁶, after which the sequence would repeat.
     pub fn sobol<F: Fn(f64, f64) -> f64 + Sync>(self, f: F, points: u64) -> Result<impl Estimator> {
         sobol(self.independent(f), points)
     }

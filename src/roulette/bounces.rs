@@ -76,15 +76,15 @@ impl BounceCount {
     /// The result is `u64::MAX`, for infinity, at u = 1 (no number of bounces is certain to be enough), and
     /// at p = 1 for every u > 0.
     ///
-    /// # Errors
-    /// If u is not in \[0, 1\].
-    ///
     /// ```
     /// let bounces = unbiased::roulette::BounceCount::new(0.5)?;
     /// assert_eq!(bounces.quantile(0.75)?, 1);
     /// assert_eq!(bounces.quantile(0.76)?, 2);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If u is not in \[0, 1\].
     pub fn quantile(&self, u: f64) -> Result<u64> {
         require("the probability u", u, (0.0..=1.0).contains(&u), "in [0, 1]")?;
         // the rounded cdf reaches 1, the exact one does not
@@ -105,9 +105,6 @@ impl BounceCount {
 
     /// N sampled by flipping one coin per bounce. Expected cost: 1/(1 − p) coins per draw.
     ///
-    /// # Errors
-    /// If p_rr = 1: a draw would never end.
-    ///
     /// ```
     /// use unbiased::{Budget, estimate, roulette::BounceCount};
     ///
@@ -116,15 +113,15 @@ impl BounceCount {
     /// assert!(estimate.z(4.0).unwrap().abs() < 5.0);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If p_rr = 1: a draw would never end.
     pub fn by_simulation(&self) -> Result<BouncesBySimulation> {
         self.require_an_end()?;
         Ok(BouncesBySimulation { p_rr: self.p_rr })
     }
 
     /// N sampled in one step, ⌊ln(1 − U)/ln p⌋, at the same cost for every p.
-    ///
-    /// # Errors
-    /// If p_rr = 1: N is infinite.
     ///
     /// ```
     /// use unbiased::{Budget, estimate, roulette::BounceCount};
@@ -134,6 +131,9 @@ impl BounceCount {
     /// assert!(estimate.z(4.0).unwrap().abs() < 5.0);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If p_rr = 1: N is infinite.
     pub fn by_inversion(&self) -> Result<BouncesByInversion> {
         self.require_an_end()?;
         Ok(BouncesByInversion { per_ln: 1.0 / self.p_rr.ln() })

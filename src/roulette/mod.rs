@@ -100,14 +100,14 @@ impl Roulette {
     /// The cost falls to a fraction p of X's, but p·Var X_rr = σ² + μ² (1 − p) ≥ σ². So roulette on a single
     /// X never lowers variance × cost.
     ///
-    /// # Errors
-    /// If the mean is not finite, or the variance is negative or NaN.
-    ///
     /// ```
     /// let roulette = unbiased::roulette::Roulette::new(0.25)?;
     /// assert_eq!(roulette.wrapped_variance(2.0, 1.0)?, 16.0); // (1 + 4)/0.25 − 4
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If the mean is not finite, or the variance is negative or NaN.
     pub fn wrapped_variance(&self, mean: f64, variance: f64) -> Result<f64> {
         require("the mean of X", mean, mean.is_finite(), "finite")?;
         require("the variance of X", variance, variance >= 0.0, "0 or positive")?;

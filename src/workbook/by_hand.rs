@@ -77,9 +77,6 @@ pub enum Judgement {
 /// 0.75)`, `2ρ/n`. Numbers without a decimal point are exact; decimals may be rounded or cut off at the last
 /// digit. Letters are compared as letters: `ρ` is right if the answer is ρ, whatever its value.
 ///
-/// # Errors
-/// If the question asks for no number, or for several and the part is missing, or the text is not understood.
-///
 /// ```
 /// use unbiased::workbook::{Judgement, judge_answer};
 ///
@@ -88,15 +85,15 @@ pub enum Judgement {
 /// assert_eq!(judge_answer("3.2", "ρ")?, Judgement::Right);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
+///
+/// # Errors
+/// If the question asks for no number, or for several and the part is missing, or the text is not understood.
 pub fn judge_answer(question: &str, text: &str) -> Result<Judgement> {
     judge_answer_at(question, text, &Options::default(), None)
 }
 
 /// The same at the parameters in `options`. With `digits`, at least that many significant digits are
 /// required, unless the answer is exact.
-///
-/// # Errors
-/// Those of [`judge_answer`], and if a parameter is outside its domain or the right answer is infinite.
 ///
 /// ```
 /// use unbiased::workbook::{Judgement, Options, judge_answer_at, question};
@@ -109,6 +106,9 @@ pub fn judge_answer(question: &str, text: &str) -> Result<Judgement> {
 /// assert_eq!(judge_answer_at("1.2", "1.3", &sheet, Some(3))?, Judgement::TooFewDigits { needed: 3 });
 /// # Ok::<(), unbiased::Error>(())
 /// ```
+///
+/// # Errors
+/// Those of [`judge_answer`], and if a parameter is outside its domain or the right answer is infinite.
 pub fn judge_answer_at(
     question: &str,
     text: &str,

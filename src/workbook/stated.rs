@@ -40,9 +40,6 @@ pub struct Stated {
 impl Question {
     /// Its texts at its parameters, as given in the options, else the sheet's.
     ///
-    /// # Errors
-    /// If a parameter is outside its domain; the message names the question.
-    ///
     /// ```
     /// use unbiased::workbook::{Options, question};
     ///
@@ -52,6 +49,9 @@ impl Question {
     /// assert_eq!(question.at(&options)?.formula, "E[N] = p_rr/(1 − p_rr) = 1.5");
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If a parameter is outside its domain; the message names the question.
     pub fn at(&'static self, options: &Options) -> Result<Stated> {
         let options = options.for_question(self);
         let named = |error| match error {

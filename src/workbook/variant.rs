@@ -40,9 +40,6 @@ const APART: f64 = 0.05;
 impl Options {
     /// The parameters of a variant for these questions; options that are already set take precedence.
     ///
-    /// # Errors
-    /// If the name is empty.
-    ///
     /// ```
     /// use unbiased::workbook::{Options, question, questions};
     ///
@@ -52,6 +49,9 @@ impl Options {
     /// assert_eq!(question.at(&ada)?, question.at(&Options::default().variant("Ada", questions())?)?);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If the name is empty.
     pub fn variant(
         mut self,
         name: &str,

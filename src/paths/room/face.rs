@@ -168,9 +168,6 @@ impl Vertex {
     /// The point at these coordinates, with the face that it lies on. On an edge, which several faces share,
     /// the cube's top comes first, then the cube's sides, the floor, the ceiling and the walls.
     ///
-    /// # Errors
-    /// If no face is there, or only the part of the floor that the cube stands on.
-    ///
     /// ```
     /// use unbiased::paths::room::{Face, Vertex};
     ///
@@ -180,6 +177,9 @@ impl Vertex {
     /// assert_eq!(error.to_string(), format!("the point (0, 0.25, 0) {sentence}"));
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If no face is there, or only the part of the floor that the cube stands on.
     pub fn at(point: [f64; 3]) -> Result<Self> {
         let position = DVec3::from_array(point);
         let contains = |face: &Face| {
