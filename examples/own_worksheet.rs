@@ -37,8 +37,8 @@ const LENGTH: Parameter = Parameter {
 static NEEDLE: Question = Question {
     id: "B.1",
     title: "Buffon's needle",
-    statement: "A needle «l» times as long as the distance of the lines on a floor is thrown. How likely \
-                does it cross a line?",
+    statement: "A needle «l» times as long as the distance of the lines on a floor is thrown. With \
+                which probability does it cross a line?",
     hint: "Where does its middle lie between two lines, and at which angle? Integrate over both.",
     formula: "P = 2l/π = «2l/π»",
     latex: &[r"P = \frac{2}{\pi}\int_0^{\pi/2} l \cos\varphi\,d\varphi = \frac{2l}{\pi} \approx «2l/π»"],
@@ -52,7 +52,12 @@ static NEEDLE: Question = Question {
         formula: "2l/π",
         over_n: None,
         slips: &[
-            Slip { id: "half", answer: "l/π", words: "the needle has two halves", classic: true },
+            Slip {
+                id: "half",
+                answer: "l/π",
+                words: "the factor 2 forgotten, for the two halves of the needle",
+                classic: true,
+            },
             Slip { id: "no-angle", answer: "l", words: "the angle forgotten", classic: true },
         ],
     }],
@@ -103,8 +108,8 @@ static DISC: Question = Question {
     formula: "E = π sin² α = «π s»",
     latex: &[r"E = \int_0^{2\pi}\!\!\int_0^{\alpha} \cos\theta \sin\theta\,d\theta\,d\varphi
           = \pi \sin^2\alpha \approx «π s»"],
-    answer: "The light fills the cone θ < α. Cosine directions meet it with probability sin² α, and each \
-             that does brings π.",
+    answer: "The light fills the cone θ < α. Cosine directions hit it with probability sin² α, and each \
+             hit contributes π.",
     numbers: &[Number {
         part: "",
         symbol: "E",

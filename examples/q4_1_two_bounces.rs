@@ -17,7 +17,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     let seed = sheet.seed();
     sheet.row("the paths drawn");
     sheet.drawing(|_| figures::paths_drawn(&paths, 3, seed))?;
-    sheet.row("light that such paths carry").truth(room.two_bounces()).estimate(&paths)?;
+    sheet.row("radiance of such paths").truth(room.two_bounces()).estimate(&paths)?;
     Ok(())
 }
 

@@ -19,8 +19,8 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     sheet.row("the paths drawn");
     sheet.drawing(|_| figures::paths_drawn(&sampled, 3, seed))?;
     for (what, paths) in [
-        ("light that such paths carry, light sampled, cosine directions", sampled),
-        ("light that such paths carry, light by chance, uniform directions", by_chance),
+        ("radiance of such paths, light sampled, cosine directions", sampled),
+        ("radiance of such paths, light by chance, uniform directions", by_chance),
     ] {
         sheet.row(what).estimate(&paths)?;
     }

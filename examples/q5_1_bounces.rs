@@ -47,7 +47,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     sheet
         .row("not divided by p_rr")
         .truth(1.0)
-        .wrong_on_purpose("nothing pays for the rays that end")
+        .wrong_on_purpose("nothing compensates for the rays that end")
         .estimate(&uncompensated)?;
     Ok(())
 }

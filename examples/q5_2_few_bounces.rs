@@ -18,7 +18,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
 
     sheet.row("E[N], coin by coin").truth(law.mean()).takes(coins).estimate(&coin_by_coin)?;
     sheet.row("E[N], in one step").truth(law.mean()).estimate(&in_one_step)?;
-    let light = sheet.row("light along such paths").truth(model.mean()).draws(1000).takes(coins);
+    let light = sheet.row("radiance along such paths").truth(model.mean()).draws(1000).takes(coins);
     let light = light.estimate(&paths)?;
     if paths.doubt().is_some() {
         light.note(INFINITE);

@@ -53,7 +53,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
         "roulette never has the smaller error at this p_rr, its variance being infinite".to_owned()
     };
     let missing = match model.mean() {
-        0.0 => "There is no light to miss.".to_owned(),
+        0.0 => "With v = 0 there is no light.".to_owned(),
         mean => format!(
             "Paths cut after k ≤ {max_k} miss {:.2} % of the light; {overtaken}.",
             -100.0 * truncated.bias() / mean

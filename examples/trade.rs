@@ -349,15 +349,13 @@ fn points_table(points: &[Compared]) -> Table {
         let ranking = found.ranking();
         let best: Vec<_> =
             ranking.iter().filter(|place| place.rank == 1).map(|place| place.rival.name.as_str()).collect();
-        cells.push(if infinite { "infinite variance: no error bar holds".into() } else { best.join(" or ") });
+        cells.push(if infinite { "infinite variance: no valid error bar".into() } else { best.join(" or ") });
         cells
     });
     Table::new(
-        "2.1: where the points stand; error slopes in n (independent points: −½), and seconds to 0.1 %, at \
-         least \
-         those of one draw, which is a whole replicate: the most efficient (those not told apart from it, \
-         too) \
-         need not be the first there, as its replicates may be better than asked for",
+        "2.1: how the points are placed: slopes of the error in n (−½ for independent points), and seconds \
+         to 0.1 %, at least those of one draw, which is a whole replicate. The most efficient way, or any \
+         not told apart from it, need not be the fastest to 0.1 %: a replicate may already be more accurate",
         [
             "integrand",
             "slope, jittered",

@@ -159,9 +159,9 @@ pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "3.4",
         title: "Directions in proportion to the BRDF",
-        statement: "The light is no longer uniform. To estimate L_r, n directions are drawn over the \
-                    hemisphere from a density p(ω) proportional to the BRDF. \
-                    Write down the Monte Carlo estimator.",
+        statement: "The incoming radiance is no longer uniform. To estimate L_r, n directions are drawn \
+                    over the hemisphere from a density p(ω) proportional to the BRDF. Write down the Monte \
+                    Carlo estimator.",
         hint: "A density in proportion to a constant is a constant, and it integrates to 1 over the \
                hemisphere's 2π steradians.",
         formula: "L̂_r = 1/n Σ (ρ/π) L_i cos θ / (1/2π) = 2ρ/n Σ L_i(ω_j) cos θ_j",
@@ -169,9 +169,9 @@ pub(crate) const QUESTIONS: &[Question] = &[
               = \frac1n \sum_{j=1}^n \frac{\frac{\rho}{\pi} L_i(\omega_j)\cos\theta_j}{\frac{1}{2\pi}}
               = \frac{2\rho}{n}\sum_{j=1}^n L_i(\omega_j)\cos\theta_j"],
         answer: "The BRDF ρ/π is constant, so a density proportional to it is constant too, and integrates \
-                 to 1 over the hemisphere's 2π steradians: p = 1/(2π). \
-                 Each draw is the integrand over the density. The light here is L cos^a θ with a = «a», \
-                 whose reflection is 2ρL/(a + 2) = «2ρ L/(a + 2)».",
+                 to 1 over the hemisphere's 2π steradians: p = 1/(2π). Each draw is the integrand over the \
+                 density. The incoming radiance here is L cos^a θ with a = «a», for which L_r is 2ρL/(a + \
+                 2) = «2ρ L/(a + 2)».",
         numbers: &[Number {
             part: "",
             symbol: "c",
@@ -280,12 +280,12 @@ pub(crate) const QUESTIONS: &[Question] = &[
               = \frac{\rho^2a^2}{(a+1)(a+2)^2}",
         ],
         answer: "The rate 1/√n is the same; the constant is smaller when the density is close to the \
-                 integrand's shape, and the integrand has a factor cos θ. The \
-                 variance is 0 exactly when p is proportional to an integrand of one sign: cosine under a \
-                 uniform sky. But cosine does not always win: under the light cos^a θ both are equal \
-                 at a = −½, and as a → −1 uniform directions have no variance and cosine ones an infinite \
-                 one. With light only along the horizon, cos θ < ε, cosine's variance is \
-                 the larger for ε < ¾, and «(1 − ε²)/(4ε/3 − ε²)» times uniform's at ε = «ε».",
+                 integrand's shape, and the integrand has a factor cos θ. The variance is 0 exactly when p \
+                 is proportional to an integrand of one sign: cosine under a uniform sky. But cosine does \
+                 not always win: for the incoming radiance cos^a θ both are equal at a = −½, and as a → −1 \
+                 uniform directions have no variance and cosine ones an infinite one. With light only along \
+                 the horizon, cos θ < ε, cosine's variance is the larger for ε < ¾, and «(1 − ε²)/(4ε/3 − \
+                 ε²)» times uniform's at ε = «ε».",
         numbers: &[],
         wrong: &[
             Wrong {

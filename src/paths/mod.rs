@@ -494,12 +494,12 @@ impl Estimator for Paths {
     /// there is a doubt, as error bars from that many draws or fewer are mostly too short. κ is estimated as
     /// follows:
     /// - A throughput of k uniform directions has κ = ((16/5)/(4/3)²)ᵏ = (9/5)ᵏ, whatever the albedo.
-    /// - If one path in m finds the light by chance, κ is m times that. m is estimated from the light's share of
-    ///   the area of all faces.
+    /// - If one path in m finds the light by chance, κ is m times that. m is estimated from the light's share
+    ///   of the area of all faces.
     /// - For a sum of up to K bounces κ is at most (Σ (16/5)^(k/4) ρᵏ)⁴/(E X²)².
     /// - Light samples from a wall at distance a from the light have κ of about 8/a³. With c, d and y the
-    ///   distances down, across and along, E Xⁿ is proportional to ∫ (cd)ⁿ/(c² + d² + y²)²ⁿ over d > a, which is
-    ///   0.131/a for n = 2 and 0.00112/a⁵ for n = 4.
+    ///   distances down, across and along, E Xⁿ is proportional to ∫ (cd)ⁿ/(c² + d² + y²)²ⁿ over d > a, which
+    ///   is 0.131/a for n = 2 and 0.00112/a⁵ for n = 4.
     ///
     /// ```
     /// # use unbiased::paths::room::{BoxRoom, Scene};

@@ -111,8 +111,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
               \text{eye}"],
         answer: "Every vertex draws its next direction around its own normal. A path of three bounces sees \
                  more of the room than one of two: floor, ceiling and the cube's sides are reached now. \
-                 Each bounce multiplies the light by the albedo of the face, «ρ_wall» on a wall, so more \
-                 bounces carry less light, but never none.",
+                 Each bounce multiplies the radiance by the albedo of the face, «ρ_wall» on a wall, so more \
+                 bounces contribute less, but never 0.",
         numbers: &[],
         wrong: &[
             Wrong { answer: "p_j′ on the same wall as p_j", slip: "a flat face does not see itself" },
@@ -147,13 +147,13 @@ pub(crate) const QUESTIONS: &[Question] = &[
               = \frac1n \sum_{j=1}^n \frac{\frac{\rho}{\pi}\, L_o(\mathbf p_j, -\omega_{i,j})
               \cos\theta_{i,j}}{p(\omega_{i,j})}"],
         answer: "Radiance does not change along a ray: what arrives at p from ω_ij is what left p_j towards \
-                 p, L_i(p, ω_ij) = L_o(p_j, −ω_ij). If L_o(p_j) is the light that p_j reflects once, this \
-                 is the part of two bounces; an unbiased estimate of it in its place, with random numbers \
-                 of its own, does not change the mean, because the mean of a product of independent factors \
-                 is the product of their means. So the radiance at p_j may be estimated by way of a further \
-                 point p_j′, and so on: that is path tracing, and Russian roulette (5) ends it. In this \
-                 room the light after one bounce, 8F with F the form factor of two parallel squares, and \
-                 after two, an integral over the walls, are known exactly.",
+                 p, L_i(p, ω_ij) = L_o(p_j, −ω_ij). If L_o(p_j) is the radiance that p_j reflects directly \
+                 from the light, this is the two-bounce part; an unbiased estimate of it in its place, with \
+                 random numbers of its own, does not change the mean, because the mean of a product of \
+                 independent factors is the product of their means. So the radiance at p_j may be estimated \
+                 by way of a further point p_j′, and so on: that is path tracing, and Russian roulette (5) \
+                 ends it. In this room the radiance after one bounce, 8F with F the form factor of two \
+                 parallel squares, and after two, an integral over the walls, are known exactly.",
         numbers: &[],
         wrong: &[
             Wrong {

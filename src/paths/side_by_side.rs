@@ -582,10 +582,10 @@ mod tests {
         [Stream::new(seed, 0), sobol, jittered]
     }
 
-    /// Each path finds the radiance of the plain loop with the same numbers, and takes as many numbers and
-    /// rays. Rounding moves a hit by 1e-16, and each further grazing bounce enlarges that. A ray within 1e-14
-    /// of an edge may end on the other side of it; from the lengths of the edges, that happens to fewer than
-    /// one path in 1e12 here.
+    /// Each path finds the radiance of the plain loop with the same numbers, and takes the same number of
+    /// random numbers and rays. Rounding moves a hit by 1e-16, and each further grazing bounce enlarges that.
+    /// A ray within 1e-14 of an edge may end on the other side of it; from the lengths of the edges, that
+    /// happens to fewer than one path in 1e12 here.
     #[test]
     fn every_path_is_one_of_the_plain_loop() {
         let (mut lit, mut seed) = (0, 0);

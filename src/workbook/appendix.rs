@@ -20,8 +20,8 @@ pub(super) struct Beside {
 const ALL: [Beside; 2] = [
     Beside {
         example: "extremes",
-        about: "Where the obvious code breaks: textbook formulas, inputs at which they fail in floating point, \
-                and what the crate gives there.",
+        about: "Where the obvious code breaks: textbook formulas, inputs at which they fail in floating \
+                point, and what the crate gives there.",
         seconds: None,
         why: "it evaluates each formula once, and has no student edition and no hint",
     },

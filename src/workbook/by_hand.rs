@@ -309,8 +309,8 @@ impl<'a> Answered<'a> {
         };
         let text = excerpt(self.text);
         Error::Usage(format!(
-            "the answer \"{text}\" is not understood: numbers, fractions, + − × / ^, brackets, ln, log10, \
-             exp, √, π, e{letters} are"
+            "the answer \"{text}\" is not understood. Allowed are numbers, fractions, + − × / ^, brackets, \
+             ln, log10, exp, √, π, e{letters}"
         ))
     }
 }

@@ -104,7 +104,7 @@ pub(super) enum Request {
 }
 
 impl Request {
-    /// The options of a run; help and hints are printed at once.
+    /// The options of a run; help and hints are printed here.
     pub fn options(self, asked: Asked<'_>) -> Result<Option<Options>> {
         match (self, asked) {
             (Self::Run(options), _) => Ok(Some(options)),
@@ -166,9 +166,7 @@ impl Request {
             }
         }
         if options.variants.is_some() && questions.len() == 1 {
-            return Err(Error::Usage(
-                "--variants makes worksheets: it goes with the example worksheet".into(),
-            ));
+            return Err(Error::Usage("--variants works with the example worksheet only".into()));
         }
         if let Some(name) = variant {
             options = options.variant(&name, questions.iter().copied())?;
@@ -178,15 +176,17 @@ impl Request {
         }
         let cut = options.shard.is_some();
         if cut && options.shards.is_some() {
-            return Err(Error::Usage(
-                "--shard makes a part and --merge the whole: give only one of them".into(),
-            ));
+            return Err(Error::Usage("--shard and --merge cannot be combined: give one of them".into()));
         } else if (cut || options.shards.is_some()) && questions.len() != 1 {
-            return Err(Error::Usage("--shard and --merge go with the example of one question".into()));
+            return Err(Error::Usage(
+                "--shard and --merge work with the example of one question only".into(),
+            ));
         } else if cut && !options.json {
-            return Err(Error::Usage("--shard prints what --merge reads: it goes with --json".into()));
+            return Err(Error::Usage("--shard needs --json, which --merge reads".into()));
         } else if cut && !matches!(options.budget, None | Some(Budget::Draws(_))) {
-            return Err(Error::Usage("--shard goes with --draws: only their number can be cut".into()));
+            return Err(Error::Usage(
+                "--shard excludes --error and --seconds: only a number of draws can be divided".into(),
+            ));
         }
         Ok(Self::Run(options))
     }
@@ -483,8 +483,8 @@ impl Options {
                     [draws] => format!(" --draws {draws}"),
                     _ => {
                         remark = Some(
-                            "where N is the number of draws of the row to be repeated: the clock gave each \
-                             its own",
+                            "where N is the number of draws of the row to be repeated: the clock ended \
+                             each row after a different number",
                         );
                         " --draws N".into()
                     }

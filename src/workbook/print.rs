@@ -18,7 +18,7 @@ use crate::run::Part;
 /// Prints the question, before its rows are computed.
 pub(super) fn heading(question: &'static Question, options: &Options, voice: Voice) -> Result<()> {
     let stated = question.at(options)?;
-    if unsaid(options) {
+    if silent(options) {
         return Ok(());
     }
     if voice == Voice::Brief {
@@ -39,13 +39,13 @@ pub(super) fn heading(question: &'static Question, options: &Options, voice: Voi
 
 /// Prints the question's number and title on one line.
 pub(super) fn title(id: &str, title: &str, options: &Options) -> Result<()> {
-    if unsaid(options) { Ok(()) } else { put(&format!("{}\n", format!("{id}  {title}").trim_end())) }
+    if silent(options) { Ok(()) } else { put(&format!("{}\n", format!("{id}  {title}").trim_end())) }
 }
 
 /// Prints a row.
 pub(super) fn row(answer: &Answer, options: &Options) -> Result<()> {
     let empty = answer.exact().is_none() && answer.found().is_none() && answer.sentence().is_none();
-    if unsaid(options) || options.edition == Edition::Student || empty {
+    if silent(options) || options.edition == Edition::Student || empty {
         return Ok(());
     }
     put(&format!("\n{}", solution(answer, options)))
@@ -112,7 +112,7 @@ fn figure_line(path: &Path) -> String {
 
 /// Prints one line per question, once the whole worksheet is done.
 pub(super) fn summary(answered: &[(&Question, Vec<Answer>)], options: &Options) -> Result<()> {
-    if unsaid(options) || options.edition == Edition::Student {
+    if silent(options) || options.edition == Edition::Student {
         return Ok(());
     }
     let mut text = String::from("\n       right rows   largest |z|   seconds   besides\n");
@@ -184,7 +184,7 @@ fn svgs(paths: &[PathBuf]) -> impl Iterator<Item = &PathBuf> {
 
 /// Prints where a page is.
 pub(super) fn page(path: &Path, options: &Options) -> Result<()> {
-    if unsaid(options) { Ok(()) } else { put(&format!("\nPage: {}\n", path.display())) }
+    if silent(options) { Ok(()) } else { put(&format!("\nPage: {}\n", path.display())) }
 }
 
 /// Prints a line of text.
@@ -193,7 +193,7 @@ pub(super) fn line(text: &str) -> Result<()> {
 }
 
 /// Whether no text for people is printed.
-fn unsaid(options: &Options) -> bool {
+fn silent(options: &Options) -> bool {
     options.json || options.quiet
 }
 
@@ -242,7 +242,7 @@ impl<'a> Row<'a> {
     }
 
     /// The row without the answer, and with a title that does not give it away.
-    fn untold(self, stated: &'a Stated) -> Self {
+    fn without_answer(self, stated: &'a Stated) -> Self {
         Self {
             what: &stated.title,
             truth: None,
@@ -258,7 +258,7 @@ impl<'a> Row<'a> {
 
 fn json(stated: &Stated, answer: &Answer, figures: &[PathBuf], options: &Options) -> io::Result<()> {
     let row = Row::of(answer, figures);
-    let row = if options.edition == Edition::Solution { row } else { row.untold(stated) };
+    let row = if options.edition == Edition::Solution { row } else { row.without_answer(stated) };
     writeln!(io::stdout(), "{}", serde_json::to_string(&row)?)
 }
 
@@ -393,8 +393,8 @@ pub(super) fn help(questions: &[&'static Question]) -> Result<()> {
         let stated = question.at(&Options::default())?;
         text += &format!("{}  {}\n\n{}\n\n", question.id, stated.title, stated.statement);
     } else {
-        text += "The worksheet: every question answered in closed form, by an estimator with its error bar, and by a \
-                 figure.\n\n";
+        text += "The worksheet: every question answered in closed form, by an estimator with its error \
+                 bar, and by a figure.\n\n";
     }
     text += "Options
     --draws N            draws of every estimator (default: each question's own number)

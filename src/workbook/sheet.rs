@@ -22,7 +22,7 @@ pub struct Sheet {
     voice: Voice,
     rows: RefCell<Vec<Answer>>,
     /// How many rows are printed; `None` before the question is.
-    told: Cell<Option<usize>>,
+    printed: Cell<Option<usize>>,
 }
 
 /// What is printed while a question is answered.
@@ -52,15 +52,15 @@ pub(super) fn answered(
     voice: Voice,
 ) -> Result<Vec<Answer>> {
     let options = options.for_question(question);
-    let sheet = Sheet { question, options, voice, rows: RefCell::default(), told: Cell::new(None) };
+    let sheet = Sheet { question, options, voice, rows: RefCell::default(), printed: Cell::new(None) };
     if voice == Voice::Brief {
-        sheet.tell(0)?;
+        sheet.print_first(0)?;
     }
     answer(&sheet)?;
     if let Some(shards) = sheet.options.shards.as_deref() {
         shards.belong_to(&sheet.rows.borrow())?;
     }
-    sheet.tell(usize::MAX)?;
+    sheet.print_first(usize::MAX)?;
     let rows = sheet.rows.into_inner();
     print::ending(question, &rows, &sheet.options, voice)?;
     Ok(rows)
@@ -72,7 +72,7 @@ impl Sheet {
         self.options.number(name)
     }
 
-    /// The question's own number `name`, where only a whole one ≥ 0 will do.
+    /// The question's own number `name`, which must be a whole number ≥ 0.
     ///
     /// # Errors
     /// If it is anything else.
@@ -122,7 +122,7 @@ impl Sheet {
         let drawn = |row: &Answer| row.figures(self.options.edition).next().is_some();
         let enough = self.options.one_figure && self.rows.borrow().iter().any(drawn);
         if self.options.shard.is_none() && !enough {
-            self.tell_all_but_the_last()?;
+            self.print_all_but_the_last()?;
             for figure in make(self.options.edition)?.into() {
                 self.change(self.last(), |answer| answer.figure(figure));
             }
@@ -142,23 +142,23 @@ impl Sheet {
 
     /// Prints the question, if it is not printed yet, and those of the first `done` rows that are not. Merged
     /// shards may turn out not to belong to these rows only at the end.
-    fn tell(&self, done: usize) -> Result<()> {
-        if self.told.get().is_none() {
+    fn print_first(&self, done: usize) -> Result<()> {
+        if self.printed.get().is_none() {
             print::heading(self.question, &self.options, self.voice)?;
         }
-        let told = self.told.get().unwrap_or(0);
+        let printed = self.printed.get().unwrap_or(0);
         if self.voice == Voice::Full {
-            for answer in self.rows.borrow().iter().take(done).skip(told) {
+            for answer in self.rows.borrow().iter().take(done).skip(printed) {
                 print::row(answer, &self.options)?;
             }
         }
-        self.told.set(Some(done.max(told)));
+        self.printed.set(Some(done.max(printed)));
         Ok(())
     }
 
     /// Prints all rows but the last, which is still being worked on. Not for merged shards.
-    fn tell_all_but_the_last(&self) -> Result<()> {
-        if self.options.shards.is_some() { Ok(()) } else { self.tell(self.last()) }
+    fn print_all_but_the_last(&self) -> Result<()> {
+        if self.options.shards.is_some() { Ok(()) } else { self.print_first(self.last()) }
     }
 }
 
@@ -251,7 +251,7 @@ impl Row<'_> {
         if self.sheet.options.edition == Edition::Student || self.most_work {
             return Ok(self);
         }
-        self.sheet.tell_all_but_the_last()?;
+        self.sheet.print_all_but_the_last()?;
         let (draws, cut) = match self.sheet.options.budget {
             None if self.sheet.options.shards.is_none() => within_reason(estimator, self.draws),
             _ => (self.draws, None),

@@ -27,6 +27,7 @@ use crate::float::two_sum;
 /// and not only just above the horizon. (Compared with 2400-bit arithmetic, the largest error was 4e-16 in
 /// 11,000 polygons of any shape, of 1e-16 to 1e300 times the distance, and 9 ε of P in 11,000 triangles not
 /// longer than wide, of 1e-150 times the distance or more.)
+///
 /// ```
 /// use glam::DVec3;
 /// use unbiased::paths::room::form_factor;

@@ -17,8 +17,9 @@ use super::face::{Face, Vertex};
 ///   corner of it without entering, it passes.
 /// - Into an edge or corner of the room, it ends there, on one of the faces that meet.
 /// - Along the floor, it ends at the cube: nothing passes under it.
-/// - From an edge between two faces of the room towards the other face, it ends where it starts, on that other
-///   face.
+/// - From an edge between two faces of the room towards the other face, it ends where it starts, on that
+///   other face.
+///
 /// ```
 /// use glam::DVec3;
 /// use unbiased::paths::room::{Face, Vertex, nearest_hit};

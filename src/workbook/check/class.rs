@@ -9,8 +9,8 @@ use serde_json::json;
 use super::super::by_hand::{self, Judgement};
 use super::super::terminal::{folded, width};
 use super::super::{Options, Table};
+use super::arguments::Arguments;
 use super::draws::{self, Source};
-use super::wish::Wish;
 use super::{Verdict, exercise};
 use crate::check::{self, Finding};
 use crate::error::{Error, Result};
@@ -36,10 +36,10 @@ struct Row {
 impl Report {
     /// Judges a CSV file with the columns student, question, answer and optionally variant, and a folder of
     /// files `STUDENT_QUESTION.txt` of draws.
-    pub fn of(answers: Option<&str>, draws: Option<&str>, wish: &Wish) -> Result<Self> {
+    pub fn of(answers: Option<&str>, draws: Option<&str>, arguments: &Arguments) -> Result<Self> {
         let mut rows = Vec::new();
         if let Some(path) = answers {
-            read_answers(path, wish, &mut rows)?;
+            read_answers(path, arguments, &mut rows)?;
         }
         if let Some(path) = draws {
             read_folder(Path::new(path), &mut rows)?;
@@ -170,7 +170,7 @@ impl Given {
     }
 }
 
-fn read_answers(path: &str, wish: &Wish, rows: &mut Vec<Row>) -> Result<()> {
+fn read_answers(path: &str, arguments: &Arguments, rows: &mut Vec<Row>) -> Result<()> {
     let unread = |error: &dyn fmt::Display| Error::Usage(format!("{path} could not be read: {error}"));
     let text = std::fs::read(path).map_err(|error| unread(&error))?;
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
@@ -184,7 +184,7 @@ fn read_answers(path: &str, wish: &Wish, rows: &mut Vec<Row>) -> Result<()> {
     let [mut student, mut question, mut answer] = [0; 3];
     for (name, place) in [("student", &mut student), ("question", &mut question), ("answer", &mut answer)] {
         let missing =
-            || Error::Usage(format!("{path} has no column {name}: it takes student, question, answer"));
+            || Error::Usage(format!("{path} has no column {name}; it needs student, question, answer"));
         *place = column(name).ok_or_else(missing)?;
     }
     let variant = column("variant");
@@ -200,9 +200,9 @@ fn read_answers(path: &str, wish: &Wish, rows: &mut Vec<Row>) -> Result<()> {
         let (student, question) = (field(student, "student")?, field(question, "question")?);
         given.once(student, question, format!("line {line}"))?;
         let mut parameters: Vec<_> =
-            wish.own.iter().filter(|(name, _)| has(question, name)).cloned().collect();
+            arguments.own.iter().filter(|(name, _)| has(question, name)).cloned().collect();
         let cell = variant.and_then(|place| record.get(place)).unwrap_or("").trim();
-        let (mut name, mut assignments) = (wish.variant.as_deref(), "");
+        let (mut name, mut assignments) = (arguments.variant.as_deref(), "");
         if cell.contains('=') {
             assignments = cell;
         } else if !cell.is_empty() {
@@ -217,7 +217,7 @@ fn read_answers(path: &str, wish: &Wish, rows: &mut Vec<Row>) -> Result<()> {
         let parameters =
             super::parameters(question, name, &parameters).map_err(|error| at(error.to_string()))?;
         let text = record.get(answer).unwrap_or("");
-        rows.push(judged(student, question, text, &parameters, wish.digits));
+        rows.push(judged(student, question, text, &parameters, arguments.digits));
     }
     Ok(())
 }

@@ -1,11 +1,11 @@
 //! Judges answers of readers: their own estimators, draws of any other program, or numbers worked out by
 //! hand, of one reader or of a class.
 
+mod arguments;
 mod class;
 mod draws;
 mod mistakes;
 mod programs;
-mod wish;
 
 use std::io::{self, Write};
 use std::panic::{self, AssertUnwindSafe};
@@ -26,9 +26,9 @@ use crate::error::{Error, Result};
 use crate::numbers::shortened;
 use crate::run::{Budget, Run, Shortfall};
 use crate::{inversion, lambertian, paths, rectangle, roulette};
+use arguments::{Action, Arguments, HELP};
 use draws::Source;
 pub use mistakes::mistakes;
-use wish::{Deed, HELP, Wish};
 
 /// All exercises, in the order of the worksheet.
 pub fn exercises() -> [&'static Exercise; 6] {
@@ -64,7 +64,8 @@ pub fn exercise(question: &str) -> Result<&'static Exercise> {
 /// truth and the classic mistakes that are consistent with them. `--help` lists what else can be judged:
 /// draws of a program in any language, numbers worked out by hand, the answers of a class.
 pub fn check_mine(question: &str, mine: &[Attempt<'_>]) -> ExitCode {
-    let judged = Wish::read(question).and_then(|wish| Ok((wish.exit_code, wish.grant(mine)?)));
+    let judged =
+        Arguments::read(question).and_then(|arguments| Ok((arguments.exit_code, arguments.run(mine)?)));
     match judged {
         Ok((true, verdict)) => ExitCode::from(verdict as u8),
         Ok((false, _)) => ExitCode::SUCCESS,
@@ -104,29 +105,29 @@ const DRAWS: u64 = 1_000_000;
 /// The most time for a probe if an error is asked for.
 const MOST_TIME: Duration = Duration::from_secs(5);
 
-impl Wish {
-    fn grant(&self, mine: &[Attempt<'_>]) -> Result<Verdict> {
-        let (said, verdict) = match &self.deed {
-            Deed::Help => (HELP.to_owned(), Verdict::Right),
-            Deed::Probes => {
+impl Arguments {
+    fn run(&self, mine: &[Attempt<'_>]) -> Result<Verdict> {
+        let (said, verdict) = match &self.action {
+            Action::Help => (HELP.to_owned(), Verdict::Right),
+            Action::Probes => {
                 let exercise = exercise(&self.question)?;
                 let text = if self.json { programs::probes_json } else { programs::probes };
                 (text(exercise, &self.question), Verdict::Right)
             }
-            Deed::Mistakes => {
+            Action::Mistakes => {
                 let table = mistakes(exercise(&self.question)?);
                 let rows = stacked(&table, width()).join("\n");
                 let plain = || format!("{}\n\n{rows}", folded(&table.caption, width()));
                 (if self.json { table.json() } else { plain() }, Verdict::Right)
             }
-            Deed::Template(language) => {
+            Action::Template(language) => {
                 let exercise = exercise(&self.question)?;
                 (programs::template(exercise, &self.question, *language)?, Verdict::Right)
             }
-            Deed::Answer(text) => self.judge_answer(text)?,
-            Deed::Draws(sources) => self.judge_draws(sources)?,
-            Deed::Mine => self.judge_mine(mine)?,
-            Deed::Class { answers, draws } => {
+            Action::Answer(text) => self.judge_answer(text)?,
+            Action::Draws(sources) => self.judge_draws(sources)?,
+            Action::Mine => self.judge_mine(mine)?,
+            Action::Class { answers, draws } => {
                 let report = class::Report::of(answers.as_deref(), draws.as_deref(), self)?;
                 let text = match (self.json, self.csv) {
                     (true, _) => report.json(),
@@ -136,8 +137,8 @@ impl Wish {
                 (text, report.verdict())
             }
         };
-        let text = match self.deed {
-            Deed::Mine | Deed::Answer(_) | Deed::Draws(_) if !self.json => folded(&said, width()),
+        let text = match self.action {
+            Action::Mine | Action::Answer(_) | Action::Draws(_) if !self.json => folded(&said, width()),
             _ => said,
         };
         writeln!(io::stdout(), "{text}").or_else(print::until_the_pipe_closes)?;
@@ -151,7 +152,7 @@ impl Wish {
             let given: Vec<_> =
                 mine.iter().map(|attempt| format!("“{}”", attempt.exercise().name())).collect();
             return Err(Error::Usage(format!(
-                "question {question} is about “{asked}”, what is written here about {}",
+                "question {question} is about “{asked}”, but the estimator in this file is about {}",
                 given.join(" and ")
             )));
         };
@@ -251,7 +252,7 @@ impl Wish {
             let others: Vec<String> =
                 others.iter().map(|(other, probe)| format!("{other}, “{probe}”")).collect();
             text += &format!(
-                "Those for probe {number} fit the truth of probe {}: were they made for it?\n",
+                "The draws for probe {number} fit the truth of probe {}: were they made for that probe?\n",
                 others.join("; or of ")
             );
         }
@@ -282,7 +283,8 @@ impl Wish {
         json!({
             "question": self.question, "verdict": Verdict::of(diagnosis.finding()).word(),
             "mistakes": mistakes, "compared": diagnosis.compared(), "counterexample": counterexample,
-            "probes": measured.collect::<Vec<_>>(), "seed": (self.deed == Deed::Mine).then_some(self.seed),
+            "probes": measured.collect::<Vec<_>>(),
+            "seed": (self.action == Action::Mine).then_some(self.seed),
         })
         .to_string()
     }

@@ -71,7 +71,7 @@ impl Language {
 /// for the reader's estimator.
 pub fn template(exercise: &Exercise, question: &str, language: Language) -> Result<String> {
     let Some(parts) = PARTS.iter().find(|parts| parts.exercise == exercise.id()) else {
-        return Err(Error::Usage(format!("question {question} has no program to begin with")));
+        return Err(Error::Usage(format!("question {question} has no template program")));
     };
     let (frame, part) = match language {
         Language::Python => (PYTHON, &parts.python),

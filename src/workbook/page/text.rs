@@ -78,8 +78,8 @@ enum Cut {
     Relations,
 }
 
-/// Relations before which a formula may be broken. The new piece starts with `{}`, which keeps the space around
-/// the relation.
+/// Relations before which a formula may be broken. The new piece starts with `{}`, which keeps the space
+/// around the relation.
 const RELATIONS: [&str; 7] = ["=", r"\approx", r"\to", r"\xrightarrow", r"\propto", r"\le", r"\ge"];
 
 /// LaTeX split at `cut`, outside of all brackets.
