@@ -4,12 +4,12 @@
 //! cargo run --release --example check_mine
 //! ```
 //!
-//! It is tried on several problems of known truth. You are told the ratio of its mean to the truth on each,
-//! and which classic mistakes that is consistent with. As it stands the file holds one of them for question
-//! 3.5, and a right estimator for 4.3: `-- --question 4.3`.
+//! It is run on several problems whose truth is known. The output is the ratio of its mean to the truth on
+//! each, and the classic mistakes that are consistent with these ratios. The file as it is contains one of
+//! these mistakes for question 3.5, and a right estimator for 4.3: `-- --question 4.3`.
 //!
-//! A number worked out by hand is judged by `-- --question 1.2 --answer 0.602`, and a program in another
-//! language by what it writes: `-- --help` says how.
+//! `-- --question 1.2 --answer 0.602` judges a number worked out by hand. Draws of a program in another
+//! language can be judged, too: see `-- --help`.
 
 use std::process::ExitCode;
 
@@ -18,15 +18,19 @@ use unbiased::workbook;
 
 // ─────────────────────────────── your estimator ───────────────────────────────
 //
-// It is a closure of a problem p and of random numbers, rng.uniform() being uniform in [0, 1):
+// A closure of a problem p and a source of random numbers: rng.uniform() is uniform in [0, 1).
 //
-// 1.1  |p: &Samples, rng|       one sample at the rate p.rate 2.1  |p: &Integral, rng|      one draw of ∫∫
-// p.f(x, y) over p.rectangle; its ends: let [[a, b], [c, d]] = p.ends(); 3.4  |p: &Reflection, rng|    one
-// draw of the radiance reflected under p.light(&direction) by p.albedo (3.5, too) 4.3  |p: &LightOfPaths,
-// rng|  one draw of the light that leaves p.room.point() after p.bounces(), below 5.1  |p: &Bounces, rng|
-// one number of bounces at p.p_rr 5    |p: &Wrapped, rng|       one X_rr at p.p_rr, where p.x(rng) draws X
+// question  closure                      one draw
+// 1.1       |p: &Samples, rng|           a sample of the exponential distribution with rate p.rate
+// 2.1       |p: &Integral, rng|          of ∫∫ p.f(x, y) over p.rectangle = [a, b] × [c, d], where
+//                                        [[a, b], [c, d]] = p.ends()
+// 3.4, 3.5  |p: &Reflection, rng|        of the reflected radiance, for the incoming radiance
+//                                        p.light(&direction) and the albedo p.albedo
+// 4.3       |p: &LightOfPaths, rng|      of the radiance that leaves p.room.point() after p.bounces()
+// 5.1       |p: &Bounces, rng|           a number of bounces at p.p_rr
+// 5         |p: &Wrapped, rng|           an X_rr at p.p_rr; p.x(rng) draws X
 //
-// Each of these problems is in `unbiased::…::mistakes` of its topic.
+// Each problem type is in the module `mistakes` of its topic, such as `unbiased::lambertian::mistakes`.
 
 use rand::distr::Distribution;
 use unbiased::lambertian::hemisphere::Hemisphere;
@@ -44,12 +48,12 @@ fn mine() -> Attempt<'static> {
     })
 }
 
-/// Question 4.3: the light that leaves p after as many bounces as `p.bounces()` holds, 2..=2 being exactly
-/// two.
+/// Question 4.3: the radiance that leaves p, summed over the numbers of bounces in `p.bounces()`; 2..=2 is
+/// exactly two.
 ///
-/// This one finds the light by chance. A point of the room, a vertex of the path, has a `position()` and a
-/// `normal()`, and the room knows what `emitted(&vertex)` and `albedo(&vertex)` are there; for a light sample
-/// there are `light_corners()`, `light_area()` and `unbiased::paths::room::visible(&vertex, point)`.
+/// This one finds the light by chance. A vertex has a `position()` and a `normal()`, and the room has
+/// `emitted(&vertex)` and `albedo(&vertex)`. For a light sample there are `light_corners()`, `light_area()`
+/// and `unbiased::paths::room::visible(&vertex, point)`.
 fn paths() -> Attempt<'static> {
     Attempt::new(|p: &LightOfPaths, rng| {
         let (room, bounces) = (&p.room, p.bounces());

@@ -1,7 +1,7 @@
-//! Where the obvious code breaks: a formula as one writes it down, an input at which it fails, and what the
-//! crate gives there.
+//! Where the obvious code breaks: textbook formulas, inputs at which they fail, and the crate's results
+//! there.
 //!
-//! The truths are from another program, to more digits than `f64` has; an error is counted in units of the
+//! The truths are computed by another program, with more digits than `f64` has. Errors are in units of the
 //! last place (ulps) of the truth.
 
 use std::process::ExitCode;
@@ -24,7 +24,7 @@ struct Extreme {
     here: f64,
 }
 
-/// The section, as the options ask.
+/// The appendix, for these options.
 pub fn answer(options: &Options) -> Result<Appendix> {
     let extremes = extremes()?;
     let mut rows = Vec::new();
@@ -43,7 +43,7 @@ pub fn answer(options: &Options) -> Result<Appendix> {
         example: "extremes",
         title: "Where the obvious code breaks",
         text: "Each formula is right on paper and fails in floating point somewhere: a difference of nearly \
-               equal numbers keeps none of their digits, a square overflows, a sum swallows what is added. \
+               equal numbers keeps none of their digits, a square overflows, a sum loses small terms. \
                An error is counted in ulps, units of the last place of the truth, which was computed with \
                another program."
             .into(),
@@ -174,7 +174,7 @@ fn extremes() -> Result<Vec<Extreme>> {
     ])
 }
 
-/// The polygon formula as it stands in books.
+/// The form factor of a polygon as textbooks have it.
 fn plain_form_factor(corners: &[DVec3; 4]) -> f64 {
     let edges = corners.iter().zip(corners.iter().cycle().skip(1));
     let sum: f64 = edges

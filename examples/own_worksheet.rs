@@ -4,10 +4,10 @@
 //! cargo run --release --example own_worksheet -- --edition both --out my_sheet
 //! ```
 //!
-//! A question is texts and numbers, `Question`, and a function that answers it. What stands between « and »
-//! in its texts is a formula in its letters, whose value is put there: so `--B.1.length 0.5` changes
-//! statement, closed form, wrong answers and estimate at once, and `--variant NAME` gives a student numbers
-//! of their own.
+//! A question consists of texts and numbers, `Question`, and a function that answers it. A part of a text
+//! between « and » is a formula in the question's letters, and is replaced by its value. So `--B.1.length
+//! 0.5` changes statement, closed form, wrong answers and estimate at once, and `--variant NAME` gives each
+//! student their own numbers.
 
 use std::f64::consts::{FRAC_1_PI, PI};
 use std::process::ExitCode;
@@ -22,7 +22,7 @@ mod q5_2;
 const LENGTH: Parameter = Parameter {
     name: "length",
     default: Value::Number(0.8),
-    help: "the needle's length in lines' distances, in (0, 1]",
+    help: "the needle's length in units of the lines' distance, in (0, 1]",
     variants: &[0.3, 0.4, 0.6, 0.7, 0.75, 0.9],
     letter: Some(Letter {
         names: &["l"],
@@ -38,8 +38,8 @@ const LENGTH: Parameter = Parameter {
 static NEEDLE: Question = Question {
     id: "B.1",
     title: "Buffon's needle",
-    statement: "A needle «l» times as long as the distance of the lines on a floor is thrown. How likely \
-                does it cross a line?",
+    statement: "A needle «l» times as long as the distance of the lines on a floor is thrown. With \
+                which probability does it cross a line?",
     hint: "Where does its middle lie between two lines, and at which angle? Integrate over both.",
     formula: "P = 2l/π = «2l/π»",
     latex: &[r"P = \frac{2}{\pi}\int_0^{\pi/2} l \cos\varphi\,d\varphi = \frac{2l}{\pi} \approx «2l/π»"],
@@ -53,7 +53,12 @@ static NEEDLE: Question = Question {
         formula: "2l/π",
         over_n: None,
         slips: &[
-            Slip { id: "half", answer: "l/π", words: "the needle has two halves", classic: true },
+            Slip {
+                id: "half",
+                answer: "l/π",
+                words: "the factor 2 forgotten, for the two halves of the needle",
+                classic: true,
+            },
             Slip { id: "no-angle", answer: "l", words: "the angle forgotten", classic: true },
         ],
     }],
@@ -88,7 +93,7 @@ const ANGLE: Parameter = Parameter {
     }),
 };
 
-/// sin² α, of which the grammar of formulas has no sine.
+/// sin² α as a letter, since formulas cannot contain a sine.
 const SIN_SQUARED: Letter = Letter {
     names: &["s"],
     value: |options| Ok(options.number("angle").to_radians().sin().powi(2)),
@@ -105,8 +110,8 @@ static DISC: Question = Question {
     formula: "E = π sin² α = «π s»",
     latex: &[r"E = \int_0^{2\pi}\!\!\int_0^{\alpha} \cos\theta \sin\theta\,d\theta\,d\varphi
           = \pi \sin^2\alpha \approx «π s»"],
-    answer: "The light fills the cone θ < α. Cosine directions meet it with probability sin² α, and each \
-             that does brings π.",
+    answer: "The light fills the cone θ < α. Cosine directions hit it with probability sin² α, and each \
+             hit contributes π.",
     numbers: &[Number {
         part: "",
         symbol: "E",

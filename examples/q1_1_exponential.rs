@@ -1,7 +1,7 @@
 //! Question 1.1: which function of U is a sample of the exponential distribution?
 //!
-//! x = F⁻¹(u) = −ln(1 − u)/λ. Below it is drawn that way, and once more without the formula, by inverting the
-//! cdf numerically; both must have mean 1/λ.
+//! x = F⁻¹(u) = −ln(1 − u)/λ. Samples are drawn with this formula, and by inverting the cdf numerically; both
+//! must have mean 1/λ.
 
 use rand::distr::Distribution;
 use unbiased::inversion::figures;
@@ -9,7 +9,7 @@ use unbiased::inversion::{Exponential, Inversion};
 use unbiased::workbook::{self, Sheet};
 use unbiased::{Result, from_fn};
 
-/// The rate 0.37 beside the sheet's, since at λ = 1 dividing and multiplying by λ look alike.
+/// Also uses the rate 0.37, since dividing and multiplying by λ look the same at λ = 1.
 pub fn answer(sheet: &Sheet) -> Result<()> {
     let asked = Exponential::new(sheet.number("rate"))?;
     let seed = sheet.seed();

@@ -1,14 +1,14 @@
 //! Question 1.3: what does the x-axis of the cdf stand for?
 //!
-//! The values that can be sampled. So the share of samples at most x must be F(x): counted here at x = 1/λ,
-//! where F = 1 − 1/e whatever λ is.
+//! It is the values that can be sampled. So the share of samples at most x must be F(x): counted here at x =
+//! 1/λ, where F = 1 − 1/e for every λ.
 
 use rand::distr::Distribution;
 use unbiased::inversion::Exponential;
 use unbiased::workbook::{self, Sheet};
 use unbiased::{Result, from_fn};
 
-/// A sentence, and the share that it speaks of.
+/// A sentence, and the share that it is about.
 pub fn answer(sheet: &Sheet) -> Result<()> {
     let exponential = Exponential::new(sheet.number("rate"))?;
     let x = exponential.mean();

@@ -1,7 +1,8 @@
 //! Question 2.1: how do 2n uniform numbers on [−2, 2] estimate ∫∫ f dx dy over the square?
 //!
-//! In n independent pairs: ⟨Fₙ⟩ = 16/n Σ f(Xᵢ, Yᵢ), since p(x, y) = p(x) p(y) = 1/16. Below for six functions
-//! whose integrals are known, then with the same evaluations better placed, then with the classic mistakes.
+//! As n independent pairs: ⟨Fₙ⟩ = 16/n Σ f(Xᵢ, Yᵢ), since p(x, y) = p(x) p(y) = 1/16. Used for six functions
+//! whose integrals are known, then with the same number of evaluations at better placed points, then with the
+//! classic mistakes.
 
 use unbiased::rectangle::figures;
 use unbiased::rectangle::{Integrand, Rectangle};

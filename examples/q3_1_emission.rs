@@ -1,7 +1,7 @@
 //! Question 3.1: what is the cube's emitted radiance?
 //!
-//! L_e = 0: wood is no lamp. So the outgoing radiance L_o = L_e + L_r is the reflected one alone, and a cube
-//! in the dark is dark.
+//! L_e = 0, as wood does not emit light. So the outgoing radiance L_o = L_e + L_r is the reflected radiance
+//! alone, and it is 0 if no light arrives.
 
 use unbiased::Result;
 use unbiased::lambertian::Lambertian;

@@ -1,6 +1,6 @@
 //! Question 3.2: the incoming radiance is the same from everywhere. What is the reflected radiance?
 //!
-//! L_r = ρ/π L_i ∫∫ cos θ sin θ dθ dφ = ρ L_i. Estimated as the integral over directions that it is, and
+//! L_r = ρ/π L_i ∫∫ cos θ sin θ dθ dφ = ρ L_i. Estimated as an integral over directions and over angles, and
 //! wrongly, with a factor forgotten.
 
 use std::f64::consts::{FRAC_PI_2, TAU};

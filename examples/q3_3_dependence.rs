@@ -1,7 +1,7 @@
 //! Question 3.3: how does the reflected radiance depend on ω_o and on ρ?
 //!
-//! Not at all, and in proportion. Half the albedo gives half the radiance; and the BRDF ρ/π, which is all
-//! that could know ω_o, does not.
+//! It does not depend on ω_o, and is proportional to ρ: half the albedo gives half the radiance. Only the
+//! BRDF could depend on ω_o, and ρ/π does not.
 
 use unbiased::Result;
 use unbiased::lambertian::Lambertian;
@@ -13,8 +13,8 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     let (albedo, radiance) = (sheet.number("albedo"), sheet.number("radiance"));
     let cubes = [Lambertian::new(albedo)?, Lambertian::new(0.5 * albedo)?];
     sheet.row("dependence on ω_o").note(
-        "The estimator draws directions ω_i of incoming light and never asks for ω_o: \
-         the same number holds for every eye.",
+        "The estimator draws directions ω_i of incoming light and does not use ω_o: \
+         the result is the same for every viewing direction.",
     );
     for cube in cubes {
         sheet

@@ -1,7 +1,7 @@
 //! Question 3.4: the estimator of L_r with directions drawn in proportion to the BRDF.
 //!
-//! The BRDF ρ/π is constant, so p = 1/(2π) and each draw is f/p = 2ρ L_i cos θ. The light is L cos^a θ, which
-//! reflects 2ρL/(a + 2).
+//! The BRDF ρ/π is constant, so p = 1/(2π) and each draw is f/p = 2ρ L_i cos θ. The incoming radiance is L
+//! cos^a θ, for which L_r = 2ρL/(a + 2).
 
 use rand::distr::Distribution;
 use unbiased::lambertian::figures;

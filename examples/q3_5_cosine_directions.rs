@@ -1,7 +1,6 @@
 //! Question 3.5: the estimator of L_r with directions drawn from p = cos θ/π.
 //!
-//! Each draw is f/p = ρ L_i: the cosine cancels on paper. The directions must be *drawn* from the new
-//! density, too.
+//! Each draw is f/p = ρ L_i, as the cosine cancels. The directions must be *drawn* from the new density, too.
 
 use rand::distr::Distribution;
 use unbiased::lambertian::figures;

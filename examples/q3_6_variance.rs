@@ -1,8 +1,8 @@
 //! Question 3.6: why does cosine-weighted sampling do better than uniform sampling?
 //!
-//! Because its density is closer to the integrand, which has a factor cos θ: the rate 1/√n is the same, the
-//! variance of a draw is smaller, and it is 0 where the two are proportional. It is also larger under some
-//! lights. The variance is itself a mean, of (X − L_r)², and is estimated as one.
+//! Its density is closer to the integrand, which has a factor cos θ. The rate 1/√n is the same, but the
+//! variance of a draw is smaller, and 0 if density and integrand are proportional. For some incoming
+//! radiances it is larger. The variance is itself a mean, of (X − L_r)², and is estimated as one.
 
 use unbiased::lambertian::figures;
 use unbiased::lambertian::hemisphere::Hemisphere::{self, Cosine, Uniform};
@@ -21,7 +21,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     sheet.figure(|| figures::variance_against_exponent(100_000, seed))?;
     sheet.figure(|| figures::variance_against_ring(400_000, seed))?;
     for sky in skies {
-        // the error bar of a variance takes E[X⁴], finite for a > −5/4 and a > −1/2
+        // the error bar of a variance needs a finite E[X⁴]: a > −5/4 (uniform), a > −1/2 (cosine)
         for (what, density, least) in
             [("variance, uniform directions", Uniform, -1.25), ("variance, cosine directions", Cosine, -0.5)]
         {
@@ -46,7 +46,7 @@ fn measured(row: Row<'_>, cube: Lambertian, light: impl Light + Copy, density: H
     let squared_deviation = from_fn(|rng| {
         let x = draw.draw(rng);
         let deviation = x - mean;
-        // a few units in the last place of x are rounding, and no variance
+        // a deviation of a few units in the last place of x is only rounding
         if deviation.abs() <= 8.0 * f64::EPSILON * x.abs() { 0.0 } else { deviation * deviation }
     });
     row.truth(light.variance(cube, density)).estimate(&squared_deviation)?;

@@ -1,8 +1,7 @@
 //! Question 4.1: paths of two bounces in the box room.
 //!
-//! They are drawn as a path tracer finds them: from p a random direction ω_i leads to p_j, and from there the
-//! light is looked for. The numbers say what such paths carry: the part of the light that reaches the eye
-//! after exactly two bounces.
+//! They are traced backwards, as in a path tracer: from p a random direction ω_i leads to p_j, where the
+//! light is sampled. The numbers are the radiance at the eye after exactly two bounces.
 
 use unbiased::Result;
 use unbiased::lambertian::hemisphere::Hemisphere;
@@ -11,14 +10,14 @@ use unbiased::paths::room::BoxRoom;
 use unbiased::paths::{Bounces, FindLight, Paths};
 use unbiased::workbook::{self, Sheet};
 
-/// Three paths to draw, and the light of all of them.
+/// Three paths to draw, and the radiance of all such paths.
 pub fn answer(sheet: &Sheet) -> Result<()> {
     let room = BoxRoom::new(sheet.scene())?;
     let paths = Paths::new(room, Bounces::Exactly(2), Hemisphere::Cosine, FindLight::BySampling)?;
     let seed = sheet.seed();
     sheet.row("the paths drawn");
     sheet.drawing(|_| figures::paths_drawn(&paths, 3, seed))?;
-    sheet.row("light that such paths carry").truth(room.two_bounces()).estimate(&paths)?;
+    sheet.row("radiance of such paths").truth(room.two_bounces()).estimate(&paths)?;
     Ok(())
 }
 

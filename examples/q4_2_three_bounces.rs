@@ -1,8 +1,7 @@
 //! Question 4.2: paths of three bounces in the box room.
 //!
-//! One more vertex, p_j′, drawn from p_j around the normal there. No closed form is known for the light they
-//! carry;
-//! two estimators that share nothing but the room agree on it.
+//! One more vertex, p_j′, drawn from p_j around the normal there. No closed form is known for the radiance;
+//! two independent estimators, which share only the room, agree on it.
 
 use unbiased::Result;
 use unbiased::lambertian::hemisphere::Hemisphere::{Cosine, Uniform};
@@ -11,7 +10,7 @@ use unbiased::paths::room::BoxRoom;
 use unbiased::paths::{Bounces, FindLight, Paths};
 use unbiased::workbook::{self, Sheet};
 
-/// Three paths to draw, and the light of all of them, found in two ways.
+/// Three paths to draw, and the radiance of all such paths, found in two ways.
 pub fn answer(sheet: &Sheet) -> Result<()> {
     let room = BoxRoom::new(sheet.scene())?;
     let sampled = Paths::new(room, Bounces::Exactly(3), Cosine, FindLight::BySampling)?;
@@ -20,8 +19,8 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     sheet.row("the paths drawn");
     sheet.drawing(|_| figures::paths_drawn(&sampled, 3, seed))?;
     for (what, paths) in [
-        ("light that such paths carry, light sampled, cosine directions", sampled),
-        ("light that such paths carry, light by chance, uniform directions", by_chance),
+        ("radiance of such paths, light sampled, cosine directions", sampled),
+        ("radiance of such paths, light by chance, uniform directions", by_chance),
     ] {
         sheet.row(what).estimate(&paths)?;
     }

@@ -1,9 +1,9 @@
 //! Question 4.3: the estimator for paths.
 //!
-//! L̂_o(p) = 1/n Σ f_r L_o(p_j) cos θ/p(ω) is 3.4's estimator with the light taken from where it left. With
-//! the exact L_o(p_j) of the light reflected once it gives the two-bounce part; with an unbiased estimate of
-//! it, too; and if that estimate goes on in the same way, more bounces. The truths of one and two bounces are
-//! exact.
+//! L̂_o(p) = 1/n Σ f_r L_o(p_j) cos θ/p(ω) is the estimator of 3.4, with L_i replaced by the radiance that
+//! leaves p_j. With the exact radiance reflected once at p_j it gives the two-bounce radiance; so it does
+//! with an unbiased estimate of it. If that estimate continues in the same way, it gives more bounces. The
+//! truths for one and two bounces are exact.
 
 use unbiased::lambertian::hemisphere::Hemisphere::{Cosine, Uniform};
 use unbiased::paths::figures;
@@ -13,7 +13,7 @@ use unbiased::placement::sobol;
 use unbiased::workbook::{self, Sheet};
 use unbiased::{Estimator, Result};
 
-/// The light of exactly K bounces and of up to K, or of all.
+/// The radiance after exactly K bounces and after up to K, or after all.
 pub fn answer(sheet: &Sheet) -> Result<()> {
     let room = BoxRoom::new(sheet.scene())?;
     let exact = [Some(room.one_bounce()), room.two_bounces()]; // after one bounce, and after two
@@ -25,7 +25,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     sheet.figure(|| figures::path_errors(&room, seed))?;
 
     let add = |what: &str, estimator: &dyn Estimator, truth: Option<f64>| {
-        // a set of points is one draw
+        // a whole set of points is one draw
         let draws = if what.contains("Sobol") { 4000 } else { 1_000_000 };
         sheet.row(what).truth(truth).draws(draws).estimate(estimator).map(|_| ())
     };
@@ -43,7 +43,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
 
     let truth = if k == 0 { Some(0.0) } else { exact.get(k as usize - 1).copied().flatten() };
     if k == 2 && exact[1].is_some() {
-        // the sheet's estimator as it stands, with L_o(p_j) known
+        // the sheet's estimator as it is, with L_o(p_j) known
         let known = reflected(room, Cosine, |p_j, _| room.direct(p_j));
         add("K-bounce part, L_o(p_j) known", &known, truth)?;
         add("K-bounce part, L_o(p_j) known, sets of 256 Sobol points", &sobol(&known, 256)?, truth)?;

@@ -1,14 +1,14 @@
 //! Question 5.1: with p_rr = 4/5, what are P(N = 0), P(N = 2) and E[N]?
 //!
-//! P(N = k) = p_rr^k (1 − p_rr) and E[N] = p_rr/(1 − p_rr). N is drawn twice: coin by coin, as a ray does,
-//! and in one step by inversion. And the coin keeps every mean: E[X_rr] = E[X].
+//! P(N = k) = p_rr^k (1 − p_rr) and E[N] = p_rr/(1 − p_rr). N is sampled in two ways: one coin per bounce, as
+//! a ray does, and in one step by inversion. Last, the coin does not change a mean: E[X_rr] = E[X].
 
 use unbiased::roulette::Roulette;
 use unbiased::roulette::figures;
 use unbiased::workbook::{self, Sheet};
 use unbiased::{Estimator, Result, from_fn};
 
-/// Each part coin by coin and in one step, then the mean that the coin keeps.
+/// Each part coin by coin and in one step, then the mean that roulette does not change.
 pub fn answer(sheet: &Sheet) -> Result<()> {
     let p_rr = sheet.number("p-rr");
     let roulette = Roulette::new(p_rr)?;
@@ -33,7 +33,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     }
     let row = |way| sheet.row(format!("E[N], {way}")).part("(iii)").truth(law.mean());
     row("coin by coin").takes(coins).estimate(&coin_by_coin)?;
-    // which draws coin by coin, thousands of times
+    // it draws coin by coin, thousands of times
     if coins <= 1e5 {
         let seed = sheet.seed();
         sheet.figure(|| figures::bounces([p_rr, 0.2], 2000, seed))?;
@@ -47,7 +47,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     sheet
         .row("not divided by p_rr")
         .truth(1.0)
-        .wrong_on_purpose("nothing pays for the rays that end")
+        .wrong_on_purpose("nothing compensates for the rays that end")
         .estimate(&uncompensated)?;
     Ok(())
 }

@@ -1,14 +1,13 @@
 //! Question 5.2: with p_rr = 1/5, what is E[N]?
 //!
-//! E[N] = p_rr/(1 − p_rr) = 1/4. Cheap; but light gathered along such paths has an infinite variance where
-//! p_rr ≤ ρ²:
-//! its estimate is unbiased and usually too dark.
+//! E[N] = p_rr/(1 − p_rr) = 1/4. That is cheap, but the radiance estimated along such paths has an infinite
+//! variance if p_rr ≤ ρ²: it is unbiased, and usually too small.
 
 use unbiased::roulette::{LightModel, Roulette};
 use unbiased::workbook::{self, Sheet};
 use unbiased::{Estimator, Result};
 
-/// The number of bounces, and the light of so few.
+/// The number of bounces, and the radiance estimated with so few.
 pub fn answer(sheet: &Sheet) -> Result<()> {
     let p_rr = sheet.number("p-rr");
     let law = Roulette::new(p_rr)?.bounces();
@@ -19,7 +18,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
 
     sheet.row("E[N], coin by coin").truth(law.mean()).takes(coins).estimate(&coin_by_coin)?;
     sheet.row("E[N], in one step").truth(law.mean()).estimate(&in_one_step)?;
-    let light = sheet.row("light along such paths").truth(model.mean()).draws(1000).takes(coins);
+    let light = sheet.row("radiance along such paths").truth(model.mean()).draws(1000).takes(coins);
     let light = light.estimate(&paths)?;
     if paths.doubt().is_some() {
         light.note(INFINITE);

@@ -1,8 +1,8 @@
 //! Question 5.3: how does a larger p_rr change E[N]?
 //!
-//! E[N] = p_rr/(1 − p_rr) grows without bound. What the bounces cost and buy is seen in a model of light
-//! transport that has exact answers: every vertex sees the light with probability v, reflects ρ of it, and
-//! goes on with p_rr.
+//! E[N] = p_rr/(1 − p_rr) grows without bound. What bounces cost and gain is shown by a model with exact
+//! answers: every vertex sees the light with probability v, reflects a fraction ρ, and goes on with
+//! probability p_rr.
 
 use unbiased::placement::sobol;
 use unbiased::roulette::figures;
@@ -10,7 +10,7 @@ use unbiased::roulette::{LightModel, Roulette};
 use unbiased::workbook::{self, Sheet};
 use unbiased::{Estimator, Result};
 
-/// The number of bounces at five p_rr, then the light of paths ended by roulette or cut off.
+/// The number of bounces at five p_rr, then the radiance of paths that are ended by roulette or cut off.
 pub fn answer(sheet: &Sheet) -> Result<()> {
     let p_rr = sheet.number("p-rr");
     let model = LightModel::new(sheet.number("albedo"), sheet.number("visibility"))?;
@@ -53,7 +53,7 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
         "roulette never has the smaller error at this p_rr, its variance being infinite".to_owned()
     };
     let missing = match model.mean() {
-        0.0 => "There is no light to miss.".to_owned(),
+        0.0 => "With v = 0 there is no light.".to_owned(),
         mean => format!(
             "Paths cut after k ≤ {max_k} miss {:.2} % of the light; {overtaken}.",
             -100.0 * truncated.bias() / mean

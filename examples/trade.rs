@@ -1,8 +1,9 @@
-//! What does a second buy? The workbook's trades of speed against accuracy, measured on this machine.
+//! What does a second buy? The workbook's estimators compared by speed and accuracy, measured on this
+//! machine.
 //!
-//! Each table compares estimators of one quantity, drawn in turns on one core: the best has the smallest
+//! Each table compares estimators of one quantity, drawn in turns on one core: the best one has the smallest
 //! variance × time. `--seconds S` takes about S seconds for each estimator. The same numbers are written as
-//! CSV, `trade_table.csv` beside the figures.
+//! CSV to `trade_table.csv`, next to the figures.
 
 use std::fs;
 use std::process::ExitCode;
@@ -28,7 +29,7 @@ struct Compared {
     found: Comparison,
 }
 
-/// The section, as the options ask.
+/// The appendix, for these options.
 pub fn answer(options: &Options) -> Result<Appendix> {
     let seconds = match options.budget {
         Some(Budget::Time(time)) => time.as_secs_f64(),
@@ -88,7 +89,7 @@ pub fn answer(options: &Options) -> Result<Appendix> {
         .chain([endings, ways, all, logarithms, precisions])
         .chain(placements)
         .collect();
-    // CSV's name begins as the figures' do: none of these files is the same twice
+    // the name of the CSV begins like those of the figures: none of these files is the same twice
     let path = options.out.join("trade_table.csv");
     fs::write(&path, csv(&compared))
         .map_err(|error| Error::Write { path: path.display().to_string(), reason: error.to_string() })?;
@@ -213,12 +214,12 @@ fn all_bounces(trade: impl Fn(f64) -> Result<Trade>) -> Result<Compared> {
     Ok(Compared { question: "4.3", what: "all bounces (the truth is an estimate)".into(), found })
 }
 
-/// The light of all bounces in the sheet's scene, and its std error, for no closed form is known: from 10⁹
-/// paths of up to ten bounces (cosine directions, the light sampled), and 2·10⁶ paths for what up to forty
-/// bounces add to that.
+/// The radiance of all bounces in the sheet's scene, with its std error, as no closed form is known: from 10⁹
+/// paths of up to ten bounces (cosine directions, the light sampled), and 2·10⁶ paths for what bounces 11 to
+/// 40 add.
 const ALL_LIGHT: [f64; 2] = [0.3553311, 1.5e-6];
 
-/// The accurate logarithm against the fast one, which is within 1 ulp and goes wide.
+/// The accurate logarithm against the fast one, which is accurate to 1 ulp and is vectorized.
 fn logarithms(trade: impl Fn(f64) -> Result<Trade>) -> Result<Compared> {
     let exponential = Exponential::new(0.37)?;
     let rivals = [
@@ -249,11 +250,11 @@ fn precisions(trade: impl Fn(f64) -> Result<Trade>) -> Result<Compared> {
     Ok(Compared { question: "4.3", what: "up to two bounces, in two precisions".into(), found })
 }
 
-/// The question, what is estimated, by what, and the truth with its error.
+/// The question, what is estimated, the estimator, and the truth with its error.
 type Placeable = (&'static str, &'static str, Box<dyn Estimator>, [f64; 2]);
 
 /// Independent numbers against jittered and Sobol ones, from a function of two numbers to paths of fifteen
-/// bounces: a jump, and every further bounce, takes some of the gain.
+/// bounces. A jump in the integrand, and every further bounce, reduce the gain.
 fn placements(trade: impl Fn(f64) -> Result<Trade>) -> Result<Vec<Compared>> {
     let surface = Lambertian::new(0.8)?;
     let (smooth, ring) = (CosinePower::new(1.0)?, RingLight::new(0.1)?);
@@ -314,8 +315,8 @@ fn placements(trade: impl Fn(f64) -> Result<Trade>) -> Result<Vec<Compared>> {
 const TWO: &str = "k ≤ 2";
 const FIFTEEN: &str = "k ≤ 15";
 
-/// Estimates and their std errors, for no closed forms are known: 20,000 and 3,000 sets of 65,536 Sobol
-/// points (cosine directions, the light sampled).
+/// Estimates and their std errors, as no closed form is known: 20,000 and 3,000 sets of 65,536 Sobol points
+/// (cosine directions, the light sampled).
 const UP_TO_3: [f64; 2] = [0.335_016_21, 2.4e-7];
 const UP_TO_15: [f64; 2] = [0.355_326_94, 9.1e-7];
 
@@ -331,7 +332,7 @@ fn table<'a>(caption: &str, comparisons: impl IntoIterator<Item = &'a Compared>)
     Table::new(caption, columns, comparisons.into_iter().flat_map(Comparison::rows))
 }
 
-/// One line an integrand: how fast the error of each way falls with n, and which one reaches 0.1 % first.
+/// One row per integrand: how fast the error of each way falls with n, and which way reaches 0.1 % first.
 fn points_table(points: &[Compared]) -> Table {
     let rows = points.iter().map(|Compared { what, found, .. }| {
         let mut cells = vec![what.clone()];
@@ -348,15 +349,13 @@ fn points_table(points: &[Compared]) -> Table {
         let ranking = found.ranking();
         let best: Vec<_> =
             ranking.iter().filter(|place| place.rank == 1).map(|place| place.rival.name.as_str()).collect();
-        cells.push(if infinite { "infinite variance: no error bar holds".into() } else { best.join(" or ") });
+        cells.push(if infinite { "infinite variance: no valid error bar".into() } else { best.join(" or ") });
         cells
     });
     Table::new(
-        "2.1: where the points stand; error slopes in n (independent points: −½), and seconds to 0.1 %, at \
-         least \
-         those of one draw, which is a whole replicate: the most efficient (those not told apart from it, \
-         too) \
-         need not be the first there, as its replicates may be better than asked for",
+        "2.1: how the points are placed: slopes of the error in n (−½ for independent points), and seconds \
+         to 0.1 %, at least those of one draw, which is a whole replicate. The most efficient way, or any \
+         not told apart from it, need not be the fastest to 0.1 %: a replicate may already be more accurate",
         [
             "integrand",
             "slope, jittered",
@@ -371,7 +370,7 @@ fn points_table(points: &[Compared]) -> Table {
     )
 }
 
-/// All comparisons below each other.
+/// All comparisons, one below the other.
 fn csv(compared: &[Compared]) -> String {
     let mut csv = String::new();
     for Compared { question, what, found } in compared {
@@ -394,7 +393,7 @@ fn records(compared: &Compared) -> Vec<Answer> {
     rivals.map(|rival| record(question, what, found.seed, rival, place(rival))).collect()
 }
 
-/// A rival's record: null is what is infinite, never reached, or not known.
+/// A rival's record; null is infinite, never reached, or unknown.
 fn record(question: &str, what: &str, seed: u64, rival: &Measured, place: Option<&Ranked<'_>>) -> Answer {
     // 0 or 1
     let flag = |flag: bool| Value::Limit(Some(flag.into()));

@@ -335,16 +335,16 @@ fn what_is_no_answer_is_an_error() {
         (
             "1.2",
             "foo",
-            "the answer \"foo\" is not understood: numbers, fractions, + − × / ^, brackets, ln, log10, exp, \
-             √, π, e, and the question's letters λ and u are",
+            "the answer \"foo\" is not understood. Allowed are numbers, fractions, + − × / ^, brackets, ln, \
+             log10, exp, √, π, e, and the question's letters λ and u",
         ),
         (
             "3.5",
             "ρ/n Σ L_i",
-            "the answer \"ρ/n Σ L_i\" is not understood: numbers, fractions, + − × / ^, brackets, ln, log10, \
-             exp, √, π, e, and the question's letters ρ, L_i, a and n are",
+            "the answer \"ρ/n Σ L_i\" is not understood. Allowed are numbers, fractions, + − × / ^, \
+             brackets, ln, log10, exp, √, π, e, and the question's letters ρ, L_i, a and n",
         ),
-        ("2.1", "16 n", "the answer \"16 n\" is not a number over n: asked for is the c of c/n Σ f(Xᵢ, Yᵢ)"),
+        ("2.1", "16 n", "the answer \"16 n\" is not a number over n: give the c of c/n Σ f(Xᵢ, Yᵢ), or c/n"),
         ("1.2", "1/0", "the answer \"1/0\" is not a finite number"),
         ("5.1", "4", "question 5.1 asks for 5.1(i), 5.1(ii), 5.1(iii): say which, not 5.1"),
         ("5.1(iv)", "4", "question 5.1 asks for 5.1(i), 5.1(ii), 5.1(iii): say which, not 5.1(iv)"),

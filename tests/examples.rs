@@ -668,7 +668,7 @@ fn words_stand_where_no_mark_can() {
         ("q3_5_cosine_directions", &["--a", "-1.5", "--draws", "2000"], "infinite variance"),
         ("q4_2_three_bounces", &["--draws", "1000"], "no closed form"),
         ("q5_1_bounces", &["--p-rr", "0.999999999999"], "Left out: a draw takes about 1e12 random numbers."),
-        ("q5_3_more_bounces", &["--visibility", "0", "--draws", "1000"], "There is no light to miss."),
+        ("q5_3_more_bounces", &["--visibility", "0", "--draws", "1000"], "With v = 0 there is no light."),
     ] {
         let text = said(example, options);
         assert!(text.contains(part) && !has_word(&text, "NaN"), "{part} is missing in\n{text}");

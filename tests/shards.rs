@@ -141,8 +141,8 @@ fn the_rows_of_shards_are_those_of_the_whole() {
         said(&[own, &["--merge", files[0], files[0], files[1], files[2]]].concat(), "is there twice");
         said(&["--shard", "0/3", "--json"], "--shard takes one of 1/N to N/N");
         said(&["--shard", "4/3", "--json"], "--shard takes one of 1/N to N/N");
-        said(&["--shard", "1/3"], "it goes with --json");
-        said(&["--shard", "1/3", "--json", "--seconds", "1"], "--shard goes with --draws");
+        said(&["--shard", "1/3"], "--shard needs --json");
+        said(&["--shard", "1/3", "--json", "--seconds", "1"], "--shard excludes --error and --seconds");
         said(&["--merge", "nowhere.json"], "nowhere.json");
     }
     let files: Vec<String> = (1..=3).map(|k| format!("q1_1_exponential_{k}.json")).collect();

@@ -1,5 +1,5 @@
-//! Section 1: the exponential, filled and drawn, beside rand_distr's ziggurat. Times are those of 1,024
-//! draws.
+//! Section 1: the exponential distribution, filled and drawn, against rand_distr's ziggurat. Times are for
+//! 1,024 draws.
 
 use divan::{Bencher, black_box};
 use rand::SeedableRng;

@@ -1,10 +1,15 @@
-"""The box room in Mitsuba 3, all cores: one JSON object a number of bounces, with paths a second, and the variance of one over the mean's square.
+"""The box room in Mitsuba 3 on all cores: one JSON object per number of bounces, with paths per second and the
+variance of a path over the mean's square.
 
-usage: python3 mitsuba_box.py VARIANT SAMPLER RENDERS SPP SEED BOUNCES...      VARIANT: llvm_ad_mono or scalar_rgb
-SAMPLER: independent, stratified, multijitter or orthogonal. (ldsampler's mean is off: 0.3145 for 0.31276 at two bounces.)
+usage: python3 mitsuba_box.py VARIANT SAMPLER RENDERS SPP SEED BOUNCES...      VARIANT: llvm_ad_mono or
+scalar_rgb
+SAMPLER: independent, stratified, multijitter or orthogonal. (ldsampler's mean is off: 0.3145 for 0.31276 at
+two bounces.)
 Install: pip install mitsuba numpy; for llvm_ad_mono libLLVM, and DRJIT_LIBLLVM_PATH=<libLLVM.so>.
-The first render of each, which compiles, is left out, and the fastest of the others is taken for the time of all. The variance is that of 400 small renders, known to 7 %, with independent samples; with
-others, whose variance depends on their number, that of the renders themselves. It is given for one path. The film sums in f32: near 1e6 samples a render its mean is off by 1e-4 or so.
+The first render, which compiles, is not timed; the time is that of the fastest of the others. With
+independent samples the variance is that of 400 small renders, known to 7 %; with other samplers,
+whose variance depends on the number of samples, it is that of the timed renders. It is given per path. The
+film sums in f32: near 1e6 samples per render its mean is off by about 1e-4.
 """
 import json
 import sys

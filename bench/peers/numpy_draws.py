@@ -1,7 +1,7 @@
-"""The estimators in numpy, ns a draw, one thread: one JSON object a row.
+"""The estimators in numpy on one thread, in ns per draw: one JSON object per row.
 
 usage: python3 numpy_draws.py [DRAWS]     Install: pip install numpy
-Each row is the best of several runs; its mean shows that it computes the right thing.
+Each row is the best of several runs; its mean shows that the result is right.
 """
 import json
 import sys

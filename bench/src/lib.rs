@@ -1,11 +1,11 @@
-//! What the benchmarks share: draws many at a time, and summed.
+//! Shared by the benchmarks: draws made many at a time, and summed.
 
 use unbiased::{Estimator, Stream, from_uniforms};
 
-/// Draws that stay in the first-level cache, as in a run.
+/// A number of draws that stays in the first-level cache, as in a run.
 pub const SLICE: usize = 1024;
 
-/// Sums `slices` slices of draws by `fill`: a bare loop.
+/// Sums `slices` slices of draws made by `fill`: a bare loop.
 #[inline(never)]
 pub fn sum_of_filled(estimator: &(impl Estimator + ?Sized), rng: &mut Stream, slices: usize) -> f64 {
     let mut draws = [0.0; SLICE];
@@ -21,13 +21,13 @@ pub fn sum_of_filled(estimator: &(impl Estimator + ?Sized), rng: &mut Stream, sl
     sums.iter().sum()
 }
 
-/// The same by one draw after another.
+/// The same with one draw after another.
 #[inline(never)]
 pub fn sum_of_drawn(estimator: &(impl Estimator + ?Sized), rng: &mut Stream, slices: usize) -> f64 {
     (0..slices * SLICE).map(|_| estimator.draw(rng)).sum()
 }
 
-/// As many uniform numbers as an estimator takes for each draw, and their sum.
+/// The same number of uniform numbers as an estimator takes per draw, and their sum.
 pub fn uniforms<const N: usize>() -> impl Estimator {
     from_uniforms(|u: [f64; N]| u.iter().sum())
 }

@@ -1,7 +1,7 @@
-//! One run of everything, peers too, and the table of ratios: `bench/run`.
+//! Measures everything once, peers too, and prints the table of ratios: `bench/run`.
 //!
-//! Ours and the peers' turns alternate, and each row takes the best of all turns: others may use the machine
-//! at the same time.
+//! This crate and its peers take turns, and each row keeps the best time of all turns, as others may use the
+//! machine at the same time.
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
@@ -28,24 +28,24 @@ const SLICES: usize = 64;
 const TURNS: usize = 3;
 const BOUNCES: [u32; 4] = [1, 2, 3, 15];
 
-/// The best time of each row so far, in ns a draw (or in seconds, where it says so).
+/// The best time of each row so far, in ns per draw (or in seconds if it says so).
 #[derive(Default)]
 struct Best(BTreeMap<String, f64>);
 
-/// Independent replicates of a set of paths, at least: fewer do not know their error.
+/// The least number of independent replicates of a set of paths; with fewer the error is not known.
 const REPLICATES: f64 = 16.0;
 
-/// Paths a set for Mitsuba's samplers, squares all of them, and Sobol points for ours.
+/// Paths per set: for Mitsuba's samplers, which need squares, and Sobol points for this crate.
 const SETS: [u64; 3] = [1 << 10, 1 << 14, 1 << 18];
 const SOBOL: [u64; 6] = [1 << 6, 1 << 8, 1 << 10, 1 << 12, 1 << 14, 1 << 16];
 
-/// A peer's paths: the best time of one, and all that was found of the variance of one over the mean's
-/// square.
+/// A peer's paths: the best time of one path, and all measurements of the variance of one path divided by the
+/// square of the mean.
 #[derive(Default)]
 struct PeerPaths {
     seconds: Option<f64>,
     variances: Vec<f64>,
-    /// Paths of a set that depend on each other.
+    /// The number of paths per set that depend on each other.
     set: f64,
 }
 
@@ -56,7 +56,7 @@ impl PeerPaths {
         self.variances.push(variance);
     }
 
-    /// To a relative std error of 1e-4.
+    /// Seconds to a relative std error of 1e-4.
     fn seconds(&self) -> Option<f64> {
         let variance = self.variances.iter().sum::<f64>() / self.variances.len() as f64;
         Some(self.seconds? * (variance / 1e-8).max(REPLICATES * self.set))
@@ -107,7 +107,7 @@ fn ours(best: &mut Best) {
     best.time("rand_distr: exponential", draws, || {
         (0..draws).map(|_| -> f64 { Exp1.sample(&mut plain) }).sum()
     });
-    // the cost of a run: beside its own draws, filled and summed, and beside a loop over draws
+    // the overhead of a run: against its own draws, filled and summed, and against a loop over draws
     let one_by_one = from_fn(move |rng| exponential.draw(rng));
     let run = |estimator: &dyn Estimator| {
         Run::new(1).threads(1).estimate(estimator, Budget::Draws(draws as u64)).unwrap().estimate.mean()
@@ -141,7 +141,7 @@ fn ours(best: &mut Best) {
         }
         for points in SOBOL {
             let placed = sobol(paths, points).unwrap();
-            // the variance of a set is known to 9 %
+            // with this many sets, the variance of a set is known to 9 %
             let sets = 256;
             for seed in 0..3 {
                 let start = Instant::now();
@@ -155,7 +155,7 @@ fn ours(best: &mut Best) {
     }
 }
 
-/// Takes the rows that a peer prints, or says why there are none.
+/// Reads the rows that a peer prints, or says why there are none.
 fn peer(
     best: &mut Best,
     script: &str,
@@ -194,7 +194,7 @@ fn main() {
         let independent = |variant, renders: u64, spp: u64| (variant, "independent", renders, spp);
         let mut rows =
             vec![independent("llvm_ad_mono", 12, 1_000_000), independent("scalar_rgb", 2, 100_000)];
-        // once: a set's variance is known to 18 %
+        // only once: a set's variance is known to 18 % from it
         for sampler in ["stratified", "multijitter", "orthogonal"].into_iter().filter(|_| turn == 1) {
             rows.extend(SETS.map(|spp| ("llvm_ad_mono", sampler, 64, spp)));
         }

@@ -1,5 +1,5 @@
-//! The whole worksheet: every question answered in closed form, by an estimator with its error bar, and in a
-//! picture, on one page.
+//! The whole worksheet on one page: every question answered in closed form, by an estimator with its error
+//! bar, and by a figure.
 
 use std::process::ExitCode;
 

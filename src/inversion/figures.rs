@@ -8,7 +8,7 @@ use crate::numbers::{equals, typeset};
 use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side, Width};
 use crate::stream::Stream;
 
-/// Rates at which densities and lengths can be drawn.
+/// The rate, if the density and the lengths can be drawn.
 fn drawable(exponential: &Exponential) -> Result<f64> {
     let rate = exponential.rate();
     let ok = (1e-290..=1e290).contains(&rate);
@@ -16,8 +16,8 @@ fn drawable(exponential: &Exponential) -> Result<f64> {
     if ok { Ok(rate) } else { Err(Error::Parameter { name: "the rate λ", value: rate, allowed }) }
 }
 
-/// 1.2: F, F⁻¹ and p, each against its own axis, over five mean lengths whatever `u` is. The solution has
-/// arrows from u to the sample that it gives; the student's edition has the curves.
+/// Figure for 1.2: F, F⁻¹ and p, each on axes of its own, for x up to 5/λ. The solution adds arrows from u to
+/// its sample; the student's edition has the curves alone.
 ///
 /// # Errors
 /// If u is not in \[0, 1\], or the rate is too large or too small to be drawn.
@@ -28,7 +28,7 @@ pub fn exponential(exponential: &Exponential, u: f64, edition: Edition) -> Resul
     let along = |name: &str| Axis::linear(name, 0.0, end);
     let share = |name: &str| Axis::linear(name, 0.0, 1.0);
 
-    // the axes' names do not say what 1.3 asks
+    // the axis names must not give away the answer to 1.3
     let (lambda, given) = (typeset(rate, 12), typeset(u, 12));
     let heading = format!("CDF, λ = {lambda}");
     let mut cdf = Panel::new(&heading, along("x (dimensionless)"), share("F(x) (dimensionless)"));
@@ -76,13 +76,14 @@ pub fn exponential(exponential: &Exponential, u: f64, edition: Edition) -> Resul
         width: Width::Page,
         height_mm: 132.0,
         columns: 2,
-        // the density below the cdf, with the same x
+        // the density stands below the cdf, with the same x axis
         panels: vec![cdf, inverse, pdf],
     }
     .draw()
 }
 
-/// “x = ln 4 ≈ 1.39”: by way of 1/(1 − u) where that is a whole number, and 1/λ where that is not 1.
+/// The sample as text, such as “x = ln 4 ≈ 1.39”: with ln n if 1/(1 − u) is a whole number n, and with λ if λ
+/// is not 1.
 fn sample_label(rate: f64, u: f64, x: f64) -> String {
     let inverse = 1.0 / (1.0 - u);
     let whole = inverse.round();
@@ -93,7 +94,7 @@ fn sample_label(rate: f64, u: f64, x: f64) -> String {
     if rate == 1.0 { format!("x = ln {whole} {number}") } else { format!("x = (ln {whole})/λ {number}") }
 }
 
-/// The sample that u gives, to be marked; `at` is λx.
+/// The sample for u, as it is marked; `at` is λx.
 struct Sample {
     u: f64,
     x: f64,
@@ -102,7 +103,7 @@ struct Sample {
     label: String,
 }
 
-/// What the axes hold, in mean lengths.
+/// The length of the x axes, in units of 1/λ.
 const LENGTHS: f64 = 5.0;
 
 impl Sample {
@@ -123,7 +124,7 @@ impl Sample {
             panel.arrow(Ink::Black, [0.0, u], [x, u]).arrow(Ink::Black, [x, u], [x, 0.0]);
             panel.marks("sample", Ink::Black, Marker::Disc, [[x, u]]);
             if u < 0.2 {
-                // both beside the curve's beginning
+                // for small u both labels go beside the start of the curve
                 panel.note(Ink::Black, [0.065, 0.07], Side::Right, label);
             } else {
                 let side = if place > 0.45 { Side::Left } else { Side::Right };
@@ -181,8 +182,8 @@ impl Sample {
     }
 }
 
-/// 1.1: ten numbers U carried across to F and down to their samples, and the empirical cdf of `draws` samples
-/// beside F, in the band that holds all of F with 95 % confidence.
+/// Figure for 1.1: ten numbers U with their samples F⁻¹(U), and the empirical cdf of `draws` samples compared
+/// with F. The band contains all of F at a confidence level of 95 %.
 ///
 /// The band is F̂ ± √(ln(2/0.05)/2n) (Dvoretzky, Kiefer & Wolfowitz 1956; Massart 1990), valid for every n.
 ///
@@ -263,7 +264,8 @@ pub fn empirical_cdf(exponential: &Exponential, draws: usize, seed: u64) -> Resu
         .draw()
 }
 
-/// 1.1: log survival, down to the last sample that f32's and f64's uniform numbers can give.
+/// Figure for 1.1: P(X > x) on a logarithmic scale, up to the largest samples that uniform numbers in f32 and
+/// f64 can give.
 ///
 /// # Errors
 /// If it cannot be drawn.
@@ -277,7 +279,7 @@ pub fn tails(exponential: &Exponential, draws: usize, seed: u64) -> Result<Figur
         .map(|i| 1usize << i)
         .take_while(|&rank| rank <= draws)
         .filter_map(|rank| samples.get(rank - 1).map(|&x| [x, rank as f64 / draws as f64]));
-    // the smallest 1 − u above 0 is one step of the grid
+    // the smallest 1 − u above 0 is one grid step
     let last = |bits: i32| f64::from(bits) * std::f64::consts::LN_2;
     let (end32, end64) = (last(24), last(53));
 

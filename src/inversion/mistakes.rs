@@ -7,7 +7,7 @@ use super::Exponential;
 use crate::check::{About, Exercise, Given, Mistake, Problem, Words};
 use crate::stream::Stream;
 
-/// Samples of the exponential distribution with rate λ: the estimator's draw is one of them.
+/// The problem of sampling the exponential distribution with rate λ. An attempt returns one sample per draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Samples {
     /// The rate λ.
@@ -19,11 +19,11 @@ pub struct Samples {
 /// What is averaged over exponential samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Statistic {
-    /// X itself: 1/λ.
+    /// X: mean 1/λ.
     Mean,
-    /// F(X), which is uniform whatever λ: ½. It lies in \[0, 1\] for every sampler, right or wrong.
+    /// F(X): mean ½, as it is uniform for every λ. In \[0, 1\] for every sampler, right or wrong.
     Cdf,
-    /// X, but at most 2/λ and at least 0: (1 − e⁻²)/λ. It lies in \[0, 2/λ\].
+    /// X clamped to \[0, 2/λ\]: mean (1 − e⁻²)/λ.
     Capped,
 }
 
@@ -122,7 +122,7 @@ fn of(
     Mistake::new(words, move |p: &Samples, rng| x(p.rate, rng.uniform()))
 }
 
-/// The same value always.
+/// A mistake that returns the same value in every draw.
 fn fixed(
     id: &'static str,
     name: &'static str,
@@ -137,7 +137,7 @@ fn fixed(
 #[rustfmt::skip] // a list to be read
 fn mistakes() -> Vec<Mistake> {
     use std::f64::consts::LN_2;
-    let divide = "solve 1 − e^(−λx) = u for x: the λ ends up below";
+    let divide = "solve 1 − e^(−λx) = u for x: divide by λ";
     let log = "e^(−λx) is undone by the natural logarithm";
     let invert = "solve F(x) = u for x: a sample is F⁻¹(U)";
     let vary = "put U into F⁻¹: a sample has to vary";

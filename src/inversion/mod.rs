@@ -1,10 +1,10 @@
-//! Section 1: a uniform random number, sent through the inverse of a cdf.
+//! Section 1: the inversion method, which maps a uniform random number through the inverse of a cdf.
 //!
 //! If U is uniform on [0, 1), then F⁻(U) = inf{x : F(x) ≥ U} has the cdf F. For the exponential distribution
 //! the inverse is a formula ([`Exponential`]); for any other one-dimensional cdf it is found by bisection
 //! ([`Inversion`]).
 //!
-//! One's own estimator for question 1.1 is checked by `examples/check_mine.rs`.
+//! `examples/check_mine.rs` checks your own estimator for question 1.1.
 
 #[cfg(feature = "workbook")]
 pub mod figures;
@@ -21,17 +21,9 @@ use crate::fast;
 use crate::float::{Extended, ROUNDING, is_probability};
 use crate::stream::Stream;
 
-/// The exponential distribution with rate λ: p(x) = λ e^(−λx) for x ≥ 0.
+/// The exponential distribution with rate λ: p(x) = λ e^(−λx) for x ≥ 0, mean 1/λ, variance 1/λ².
 ///
-/// Drawn by inversion, X = −ln(1 − U)/λ (worksheet 1.1; *Physically Based Rendering*, 4th ed., section
-/// A.4.2). Mean 1/λ, variance 1/λ². As an [`Estimator`] its draws are X itself, so its estimate is that of
-/// the mean.
-///
-/// # The ends
-/// U = k·2⁻⁵³ is never 1, so X is never infinite and its tail ends at λX = 53 ln 2 = 36.7368; in `f32`, where
-/// U = k·2⁻²⁴, at 24 ln 2 = 16.6355: one draw in 2⁵³ or 2²⁴. On these grids 1 − U is exact, so the plain
-/// logarithm loses nothing. Only where 36.7/λ itself is no number any more, for λ < 2.1e-307 in `f64` and λ <
-/// 4.9e-38 in `f32`, can a sample be infinite, which ends a run with an error.
+/// Sampled by inversion, X = −ln(1 − U)/λ. As an [`Estimator`] each draw is X, so it estimates the mean.
 ///
 /// ```
 /// use unbiased::inversion::Exponential;
@@ -42,6 +34,15 @@ use crate::stream::Stream;
 /// assert_eq!(exponential.pdf(x), 0.25);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
+///
+/// # Largest sample
+/// U = k·2⁻⁵³ is never 1, so X is at most 53 ln 2/λ = 36.7368/λ, which has probability 2⁻⁵³. In `f32`, U =
+/// k·2⁻²⁴, and X is at most 24 ln 2/λ = 16.6355/λ, with probability 2⁻²⁴. On these grids 1 − U is exact, so
+/// the plain logarithm is accurate. A sample is infinite, which ends a run with an error, only if these
+/// quotients overflow: for λ < 2.1e-307 in `f64` and λ < 4.9e-38 in `f32`.
+///
+/// # Source
+/// Worksheet 1.1; *Physically Based Rendering*, 4th ed., section A.4.2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Exponential {
     rate: f64,
@@ -49,7 +50,7 @@ pub struct Exponential {
 }
 
 impl Exponential {
-    /// The exponential distribution with rate λ, in 1/\[x\].
+    /// The exponential distribution with rate λ, in units of 1/x.
     ///
     /// # Errors
     /// If λ is not positive and finite.
@@ -87,8 +88,8 @@ impl Exponential {
         self.rate * (survival - survival * lost)
     }
 
-    /// Where e^(−λx) alone may underflow, a large λ can still bring the density back into range: e^(−λx) is
-    /// e^(−512) once or twice times one that is far inside `f64`.
+    /// λ e^(−λx) where e^(−λx) alone may underflow: e^(−512) is split off once or twice, and what is left is
+    /// well inside `f64`'s range.
     #[cold]
     fn pdf_far_out(&self, product: f64, lost: f64) -> f64 {
         let once = Extended::from(EXP_FAR[0]) + Extended::from(EXP_FAR[1]);
@@ -97,18 +98,18 @@ impl Exponential {
         (Extended::from(self.rate) * factor * Extended::from(rest - rest * lost)).round()
     }
 
-    /// F(x) = P(X ≤ x) = 1 − e^(−λx), by `exp_m1`: 1 − e^(−λx) itself is 0 at x = 1e-17. It does
-    /// not fall between neighbours, either.
+    /// F(x) = P(X ≤ x) = 1 − e^(−λx). Computed with `exp_m1`, as 1 − e^(−λx) rounds to 0 at λx = 1e-17. It
+    /// never decreases from one `f64` to the next.
     pub fn cdf(&self, x: f64) -> f64 {
         if x < 0.0 {
             return 0.0;
         }
-        // what rounding takes from λx costs half an ulp at most: a correction for it could only make F fall
-        // between neighbours
+        // rounding of λx costs at most half an ulp; a correction could make F decrease between neighbouring
+        // numbers
         (-self.rate * x).exp_m1().abs()
     }
 
-    /// P(X > x) = e^(−λx), where 1 − F(x) has no digits left for large x.
+    /// P(X > x) = e^(−λx). Accurate for large x, where 1 − F(x) cancels.
     pub fn survival(&self, x: f64) -> f64 {
         if x < 0.0 {
             return 1.0;
@@ -118,8 +119,8 @@ impl Exponential {
         survival - survival * lost
     }
 
-    /// F⁻¹(u) = −ln(1 − u)/λ for any u in \[0, 1\], by `ln_1p`: for u = 1e-20, 1 − u rounds to 1. F⁻¹(1) =
-    /// +∞.
+    /// F⁻¹(u) = −ln(1 − u)/λ for u in \[0, 1\]; F⁻¹(1) = +∞. Computed with `ln_1p`, as 1 − u rounds to 1 for
+    /// u = 1e-20.
     ///
     /// # Errors
     /// If u is not in \[0, 1\].
@@ -129,11 +130,7 @@ impl Exponential {
         Ok((-u).ln_1p().abs() / self.rate)
     }
 
-    /// The x that is exceeded with probability u, −ln(u)/λ for any u in \[0, 1\]: F⁻¹(1 − u), which has no
-    /// digits left for small u.
-    ///
-    /// # Errors
-    /// If u is not in \[0, 1\].
+    /// The x with P(X > x) = u: −ln(u)/λ for u in \[0, 1\]. Accurate for small u, where F⁻¹(1 − u) is not.
     ///
     /// ```
     /// let exponential = unbiased::inversion::Exponential::new(1.0)?;
@@ -141,13 +138,15 @@ impl Exponential {
     /// assert!((exponential.survival(x) / 1e-100 - 1.0).abs() < 1e-13);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If u is not in \[0, 1\].
     pub fn inverse_survival(&self, u: f64) -> Result<f64> {
         require_probability(u)?;
         Ok(u.ln().abs() / self.rate)
     }
 
-    /// λx, and what rounding took from it: an exponent near 700 that is off by half an ulp costs 300 ulp of
-    /// its exponential.
+    /// λx and its rounding error: half an ulp of an exponent near 700 is 300 ulp of its exponential.
     fn times(&self, x: f64) -> (f64, f64) {
         let product = self.rate * x;
         let lost = self.rate.mul_add(x, -product);
@@ -155,10 +154,10 @@ impl Exponential {
     }
 }
 
-/// Where the density is computed with care.
+/// The λx from which the density is computed in several factors.
 const FAR: f64 = 512.0;
 
-/// e^(−512) as an unevaluated sum.
+/// e^(−512) as a double-double.
 const EXP_FAR: [f64; 2] = [4.377491037053051e-223, 2.706079830228623e-239];
 
 fn require_probability(u: f64) -> Result<f64> {
@@ -176,7 +175,7 @@ impl Distribution<f32> for Exponential {
     #[inline]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f32 {
         let u: f32 = StandardUniform.sample(rng);
-        // divided in f64: a rate beyond f32 would make 0/0 of U = 0, or lose digits
+        // divided in f64: a rate outside f32's range would give 0/0 for U = 0, or lose digits
         (f64::from((1.0 - u).ln().abs()) / self.rate) as f32
     }
 }
@@ -187,7 +186,7 @@ impl Density<1> for Exponential {
     #[inline(always)]
     fn warp(&self, [u]: [f64; 1]) -> f64 {
         let x = fast::ln(1.0 - u).abs();
-        // a product in place of a quotient takes half the time
+        // multiplying takes half the time of dividing
         if self.mean.is_normal() { x * self.mean } else { x / self.rate }
     }
 
@@ -207,17 +206,16 @@ impl Estimator for Exponential {
     }
 }
 
-/// The inverse F⁻(u) = inf{x : F(x) ≥ u} of any one-dimensional cdf, smooth or with jumps and flats, found by
-/// bisection.
+/// The inverse F⁻(u) = inf{x : F(x) ≥ u} of any one-dimensional cdf, smooth or with jumps and flat parts,
+/// found by bisection.
 ///
-/// The bracket is halved in the *order of `f64`'s bits*, not in length: at most 64 evaluations of F lead from
-/// any support, infinite ones too, to two neighbouring numbers, of which the upper is the answer. There is no
-/// tolerance and no starting guess, and a jump or a flat is nothing special. (Worksheet 1.1, "any other
-/// one-dimensional distribution"; Devroye, *Non-Uniform Random Variate Generation*, section II.2.)
+/// The bracket is halved in the *order of `f64`'s bit patterns*, not in length. So at most 64 evaluations of
+/// F lead from any support, even an infinite one, to two neighbouring numbers; the upper one is the answer.
+/// There is no tolerance and no starting guess, and jumps and flat parts need no special treatment.
 ///
-/// As a [`Distribution`] it draws F⁻(U), with 2⁻⁵⁴ for U = 0, so that the least and the greatest sample have
-/// probability 2⁻⁵³ each and are finite wherever F⁻ is there. A sample is NaN where F turns out not to be a
-/// cdf, which ends a run with an error; [`inverse_cdf`](Self::inverse_cdf) says what was wrong.
+/// As a [`Distribution`] it draws F⁻(U), with 2⁻⁵⁴ in place of U = 0. So the smallest and the largest sample
+/// have probability 2⁻⁵³ each, and are finite if F⁻ is there. A sample is NaN if F turns out not to be a cdf,
+/// which ends a run with an error; [`inverse_cdf`](Self::inverse_cdf) says what is wrong.
 ///
 /// ```
 /// use unbiased::inversion::Inversion;
@@ -227,31 +225,36 @@ impl Estimator for Exponential {
 /// assert_eq!(fair_die.inverse_cdf(0.51)?, 4.0);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
+///
+/// # Source
+/// Worksheet 1.1, "any other one-dimensional distribution"; Devroye, *Non-Uniform Random Variate Generation*,
+/// section II.2.
 #[derive(Debug, Clone, Copy)]
 pub struct Inversion<F> {
     cdf: F,
     /// The support's lower end.
     low: f64,
-    /// Where samples are looked for: the support, or where all but 2⁻⁴⁰ of its mass is.
+    /// The interval that is searched: the support, or a part of it with all but 2⁻⁴⁰ of the mass.
     within: [f64; 2],
 }
 
-/// How far out a cdf is asked to see whether it ends at 0 or 1, if the support reaches further: what a
-/// library computes of larger numbers, λx for one, is often infinite, and some of their cdfs panic there.
+/// The largest |x| at which `new` evaluates a cdf on an infinite support. For larger x, intermediate results
+/// such as λx often overflow, and some libraries' cdfs panic.
 const FARTHEST: f64 = f64::from_bits((1023 + 960) << 52);
 
 impl<F: Fn(f64) -> f64> Inversion<F> {
-    /// The inverse of `cdf` on the support [low, high], whose ends may be infinite. There F is 0 and 1, and
-    /// `cdf` is not asked. Where it is NaN from some large number on, as ∞·0 is, F counts as 1 there if it
-    /// has come within 2⁻⁴⁰ of that before; and as 0 towards −∞.
+    /// The inverse of `cdf` on the support \[low, high\]. At an infinite end F is taken as 0 or 1 without
+    /// calling `cdf`. If `cdf` is NaN for all large x, as ∞·0 is, F counts as 1 there if it has come within
+    /// 2⁻⁴⁰ of 1 before; likewise as 0 towards −∞.
     ///
     /// # Errors
-    /// If the support is empty or NaN, or the cdf, looked at in 65 points across the support, leaves [0, 1]
-    /// or falls, by more than 2⁻⁴⁰, is NaN elsewhere, or ends flat so that there is mass at infinity.
+    /// If the support is empty or NaN, or if the cdf, evaluated at 65 points across the support, leaves \[0,
+    /// 1\] or decreases, by more than 2⁻⁴⁰, is NaN elsewhere, or levels off so that there is mass at
+    /// infinity.
     pub fn new(cdf: F, [low, high]: [f64; 2]) -> Result<Self> {
         require("the support's lower end", low, low < f64::INFINITY, "a number below +∞")?;
         require("the support's upper end", high, high > low, "above the lower end")?;
-        // −0 is 0, as everywhere in the order of bits
+        // makes −0 into 0, which has the same rank
         let low = low + 0.0;
         let mut inversion = Self { cdf, low, within: [low, high] };
         let [first, last] = inversion.within.map(|end| inversion.last_number(0f64.clamp(low, high), end));
@@ -274,13 +277,13 @@ impl<F: Fn(f64) -> f64> Inversion<F> {
         Ok(inversion)
     }
 
-    /// F⁻(u) = inf{x : F(x) ≥ u}, the smallest `f64` in the support at which the cdf reaches u; the support's
-    /// lower end at u = 0. Where the cdf ends less than 2⁻⁴⁰ below u, it is where the cdf reaches its last
-    /// value.
+    /// F⁻(u) = inf{x : F(x) ≥ u}: the smallest `f64` in the support at which the cdf reaches u, or the
+    /// support's lower end for u = 0. If the cdf ends less than 2⁻⁴⁰ below u, the result is the point where
+    /// it reaches its last value.
     ///
     /// # Errors
-    /// If u is not in \[0, 1\], or on the way the cdf is seen to leave \[0, 1\], to fall, or not to reach u,
-    /// by more than 2⁻⁴⁰.
+    /// If u is not in \[0, 1\], or if the bisection finds that the cdf leaves \[0, 1\], decreases, or does
+    /// not reach u, by more than 2⁻⁴⁰.
     pub fn inverse_cdf(&self, u: f64) -> Result<f64> {
         require_probability(u)?;
         if u == 0.0 {
@@ -294,7 +297,7 @@ impl<F: Fn(f64) -> f64> Inversion<F> {
                 format!("at the support's upper end {high:?} it is {f_above}, and never reaches {u}");
             return Err(Error::NotACdf { reason });
         }
-        // a cdf that ends at 1 but for rounding has reached 1 there
+        // a cdf may end a rounding error below 1: its last value counts as 1
         let u = u.min(f_above);
         if f_below >= u {
             return Ok(low);
@@ -325,8 +328,8 @@ impl<F: Fn(f64) -> f64> Inversion<F> {
         if is_probability(f) { Ok(f) } else { Err(outside()) }
     }
 
-    /// Of an infinite end, the last number on the way there from `inside` at which F is not NaN; a finite end
-    /// itself.
+    /// For an infinite end, the last number from `inside` towards it at which F is not NaN; for a finite end,
+    /// that end.
     fn last_number(&self, inside: f64, end: f64) -> f64 {
         let is_nan = |rank| (self.cdf)(from_order(rank)).is_nan();
         let far = if inside.abs() < FARTHEST { FARTHEST } else { f64::MAX };
@@ -342,8 +345,8 @@ impl<F: Fn(f64) -> f64> Inversion<F> {
     }
 }
 
-/// Where to look for samples towards an infinite end of the support: up to x, the last number there, if all
-/// the mass is on this side of it but for rounding, and else up to the end.
+/// How far to search towards an infinite end of the support: up to x, the last number with a value F(x), if
+/// all the mass up to rounding lies on this side of it, else up to the end.
 fn infinite_end(end: f64, (x, f): (f64, f64), beyond: f64, rise: f64) -> Result<f64> {
     let not_a_cdf = |reason| Err(Error::NotACdf { reason });
     if beyond <= ROUNDING {
@@ -367,8 +370,7 @@ fn not_falling((x, f_x): (f64, f64), (y, f_y): (f64, f64)) -> Result<()> {
 
 impl<F: Fn(f64) -> f64> Distribution<f64> for Inversion<F> {
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
-        // U = 0 stands for its cell [0, 2⁻⁵³) of the grid: the cell's middle keeps a support without a lower
-        // end from giving −∞
+        // U = 0 is replaced by the middle of its grid cell [0, 2⁻⁵³), as F⁻(0) may be −∞
         const MIDDLE: f64 = 0.5 / (1u64 << 53) as f64;
         let u: f64 = StandardUniform.sample(rng);
         self.inverse_cdf(u.max(MIDDLE)).unwrap_or(f64::NAN)

@@ -56,7 +56,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
         numbers: &[Number {
             part: "",
             symbol: "x(0.75)",
-            what: "a sample for the uniform number u, 0.75 where it is to be in digits",
+            what: "a sample for the uniform number u; for a number take u = 0.75",
             formula: "−ln(1 − u)/λ or −ln u/λ",
             over_n: None,
             slips: &[
@@ -156,7 +156,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
                 answer: "a probability",
                 slip: "that is the vertical axis, or the horizontal one of F⁻¹",
             },
-            Wrong { answer: "the random number U", slip: "U lives on the vertical axis of F" },
+            Wrong { answer: "the random number U", slip: "U is on the vertical axis of F" },
         ],
         on_the_original: Some(
             "The same letter x stands for a value in F(x) and for a probability in F⁻¹(x) there; here that \

@@ -14,7 +14,8 @@ use crate::plot::{Axis, Figure, Ink, Marker, Panel, Plot, Side};
 use crate::run::{Budget, estimate};
 use crate::stream::Stream;
 
-/// 3.2: the integrand cos θ sin θ with its area ½, and what is integrated when a factor is forgotten.
+/// Figure for 3.2: the integrand cos θ sin θ with its area ½, and what is integrated if a factor is
+/// forgotten.
 ///
 /// # Errors
 /// If it cannot be drawn.
@@ -46,7 +47,7 @@ pub fn integrand() -> Result<Figure> {
         .draw()
 }
 
-/// 3.4 and 3.5: sampled directions from above and from the side.
+/// Figures for 3.4 and 3.5: sampled directions from above and from the side.
 ///
 /// # Errors
 /// If it cannot be drawn.
@@ -97,7 +98,7 @@ pub fn directions(hemisphere: Hemisphere, count: usize, seed: u64) -> Result<Fig
         .draw()
 }
 
-/// f/p of a white surface under a uniform light of radiance 1, against θ: what varies from draw to draw.
+/// f/p against θ for a white surface under constant incoming radiance 1.
 fn reason() -> Panel {
     let ticks = [(0.0, "0"), (FRAC_PI_4, "π/4"), (FRAC_PI_2, "π/2")];
     let mut panel = Panel::new(
@@ -116,8 +117,8 @@ fn reason() -> Panel {
     panel
 }
 
-/// 3.6: f/p against θ for both densities, which is the reason, and the variance of both against the exponent
-/// a of the light cos^a θ, exact and measured.
+/// Figure for 3.6: f/p against θ for both densities, and their variances against the exponent a of the
+/// incoming radiance cos^a θ, exact and measured.
 ///
 /// # Errors
 /// If it cannot be drawn.
@@ -179,7 +180,8 @@ pub fn variance_against_exponent(draws: u64, seed: u64) -> Result<Figure> {
         .draw()
 }
 
-/// 3.6: cosine's variance over the uniform one against the width of a ring of light along the horizon.
+/// Figure for 3.6: the variance of cosine directions over that of uniform ones, against the width of a ring
+/// of light along the horizon.
 ///
 /// # Errors
 /// If it cannot be drawn.
@@ -222,12 +224,12 @@ pub fn variance_against_ring(draws: u64, seed: u64) -> Result<Figure> {
         .draw()
 }
 
-/// The relative difference taken for none: half of the smaller bias shown.
+/// Relative differences below this count as none: half of the smaller bias shown.
 const DELTA: f64 = 5e-3;
 
-/// The wealth of those who bet against an estimator's mean, while it is drawn from: a right estimator of the
-/// light reflected under L = cos θ, one that is 1 % off, and the classic mistake, uniform directions with the
-/// cosine weight. Beside it the bets that certify the right one.
+/// The wealth of bets against an estimator's mean as draws come in, for three estimators of the radiance
+/// reflected under L = cos θ: a right one, one that is 1 % off, and the classic mistake, uniform directions
+/// with the cosine weight. A second panel has the bets that certify the right one.
 ///
 /// # Errors
 /// If it cannot be drawn.
@@ -307,7 +309,7 @@ pub fn betting(seed: u64) -> Result<Figure> {
         .draw()
 }
 
-/// Looks at least 2 % apart, and the last.
+/// Keeps looks whose numbers of draws are at least 2 % apart, and the last one.
 fn thinned(looks: &[Look]) -> impl Iterator<Item = &Look> {
     let last = looks.last().map_or(0, |look| look.draws);
     let mut next = 0.0;

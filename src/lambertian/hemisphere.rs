@@ -10,10 +10,10 @@ use crate::error::{Result, require};
 use crate::estimator::Density;
 use crate::fast::sin_cos_of_turns;
 
-/// A direction: a vector of unit length (to 2 ulp) whose z axis is the surface's normal.
+/// A direction: a unit vector (to 2 ulp) in coordinates whose z axis is the surface's normal.
 ///
-/// θ is its angle to the normal and φ the one around it, from the x axis towards y. Directions with cos θ < 0
-/// point below the horizon, into the surface.
+/// θ is the angle to the normal, and φ the angle around it, from the x axis towards y. Directions with cos θ
+/// < 0 point below the horizon, into the surface.
 ///
 /// ```
 /// use unbiased::lambertian::hemisphere::Direction;
@@ -37,7 +37,7 @@ impl Direction {
         }
         let largest = x.abs().max(y.abs()).max(z.abs());
         require("a direction's largest component", largest, largest > 0.0, "other than 0")?;
-        // powers of two keep every digit, and the squares inside f64
+        // scaling by a power of two is exact, and keeps the squares in f64's range
         let scale = match largest {
             _ if largest > 2f64.powi(500) => 2f64.powi(-600),
             _ if largest < 2f64.powi(-500) => 2f64.powi(600),
@@ -49,8 +49,7 @@ impl Direction {
 
     /// The direction with this cos θ and φ (in radians, any number of turns).
     ///
-    /// Near the normal `cos_theta` itself holds few digits of θ; [`Hemisphere::direction_of`] does not go
-    /// through it.
+    /// Near the normal, cos θ determines θ to a few digits only; [`Hemisphere::direction_of`] avoids that.
     ///
     /// # Errors
     /// If cos θ is not in \[−1, 1\], or φ not finite.
@@ -71,7 +70,7 @@ impl Direction {
         self.0.z
     }
 
-    /// sin θ = √(x² + y²), which keeps its digits near the normal, where √(1 − cos² θ) has none.
+    /// sin θ = √(x² + y²), accurate near the normal, where √(1 − cos² θ) cancels.
     pub fn sin_theta(&self) -> f64 {
         self.0.x.hypot(self.0.y)
     }
@@ -81,10 +80,10 @@ impl Direction {
         self.sin_theta().atan2(self.0.z)
     }
 
-    /// The angle φ around the normal, in [0, 2π); 0 or π where the direction is the normal's and has none.
+    /// The angle φ around the normal, in [0, 2π); 0 or π for the normal itself, where it is not defined.
     pub fn phi(&self) -> f64 {
         let phi = self.0.y.atan2(self.0.x);
-        // a hair below a whole turn would round to one; abs turns −0 into 0
+        // just below 2π the sum would round to 2π; abs turns −0 into 0
         if phi < 0.0 { (phi + TAU).min(TAU.next_down()) } else { phi.abs() }
     }
 
@@ -101,22 +100,22 @@ impl From<Direction> for DVec3 {
     }
 }
 
-/// The densities of section 3 over the directions above a surface, in 1/sr. Both are drawn by inversion from
-/// two uniform numbers (U, V), with φ = 2πV:
+/// The densities of section 3 for directions above a surface, in 1/sr. Both are sampled by inversion from two
+/// uniform numbers (U, V), with φ = 2πV:
 ///
 /// | | p(ω) | cos θ | sin θ | P(cos θ ≤ c) | worksheet |
 /// |---|---|---|---|---|---|
 /// | `Uniform` | 1/(2π) | 1 − U | √(U(2 − U)) | c | 3.4 |
 /// | `Cosine` | cos θ/π | √(1 − U) | √U | c² | 3.5 |
 ///
-/// Uniform: the area of a sphere between two heights is in proportion to their distance (Archimedes), so cos
-/// θ is uniform. Cosine: a uniform point of the unit disc, at radius √U, lifted onto the sphere (Malley;
+/// Uniform: the area of a sphere between two heights is proportional to their distance (Archimedes), so cos θ
+/// is uniform. Cosine: a uniform point of the unit disc, at radius √U, lifted onto the sphere (Malley;
 /// *Physically Based Rendering*, 4th ed., section A.5).
 ///
-/// # The ends
-/// U = k·2⁻⁵³ is never 1, so cos θ is never 0 and cosine's f/p never 0/0: the smallest cos θ is 2⁻⁵³ =
+/// # Smallest cosine
+/// U = k·2⁻⁵³ is never 1, so cos θ is never 0, and f/p with `Cosine` never 0/0. The smallest cos θ is 2⁻⁵³ =
 /// 1.1e-16 for `Uniform` and 2⁻²⁶·⁵ = 1.05e-8 for `Cosine`, each with probability 2⁻⁵³. sin θ is computed
-/// from U and not as √(1 − cos² θ), which rounds to 0 for U < 2⁻⁵³ and loses half the digits long before.
+/// from U, as √(1 − cos² θ) is 0 for U < 2⁻⁵³ and inaccurate long before.
 ///
 /// ```
 /// use rand::distr::Distribution;
@@ -127,20 +126,17 @@ impl From<Direction> for DVec3 {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Hemisphere {
-    /// All directions above the horizon alike: p = 1/(2π).
+    /// The same for all directions above the horizon: p = 1/(2π).
     Uniform,
-    /// In proportion to the cosine of the angle to the normal: p = cos θ/π.
+    /// Proportional to the cosine of the angle to the normal: p = cos θ/π.
     Cosine,
 }
 
 impl Hemisphere {
-    /// Both densities, to loop over.
+    /// Both densities.
     pub const ALL: [Self; 2] = [Self::Uniform, Self::Cosine];
 
-    /// The direction drawn from the uniform numbers u and v. u = 0 is the normal and u = 1 the horizon.
-    ///
-    /// # Errors
-    /// If u or v is not in \[0, 1\].
+    /// The direction for the uniform numbers u and v. u = 0 is the normal and u = 1 the horizon.
     ///
     /// ```
     /// use unbiased::lambertian::hemisphere::Hemisphere;
@@ -150,6 +146,9 @@ impl Hemisphere {
     /// assert_eq!(Hemisphere::Cosine.uniforms_of(&direction)?, [0.75, 0.5]);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If u or v is not in \[0, 1\].
     pub fn direction_of(self, u: f64, v: f64) -> Result<Direction> {
         require("the uniform number u", u, (0.0..=1.0).contains(&u), "in [0, 1]")?;
         require("the uniform number v", v, (0.0..=1.0).contains(&v), "in [0, 1]")?;
@@ -159,12 +158,12 @@ impl Hemisphere {
     /// The uniform numbers \[u, v\] that [`direction_of`](Self::direction_of) turns into `direction`.
     ///
     /// # Errors
-    /// If the direction points below the horizon, where none is drawn.
+    /// If the direction points below the horizon, where both densities are 0.
     pub fn uniforms_of(self, direction: &Direction) -> Result<[f64; 2]> {
         let cos = direction.cos_theta();
         require("cos θ", cos, cos >= 0.0, "0 or more: nothing is drawn below the horizon")?;
         let sin_squared = direction.sin_theta().powi(2);
-        // near the normal from sin θ, near the horizon from cos θ: each where it has digits to give
+        // from sin θ near the normal and from cos θ near the horizon, where each is accurate
         let u = match self {
             Self::Uniform if cos > 0.5 => sin_squared / (1.0 + cos),
             Self::Uniform => 1.0 - cos,

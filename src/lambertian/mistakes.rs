@@ -1,4 +1,4 @@
-//! Mistakes in estimating the light that a diffuse surface reflects.
+//! Mistakes in estimating the radiance that a diffuse surface reflects.
 
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI, TAU};
 use std::fmt;
@@ -10,31 +10,32 @@ use crate::error::Result;
 use crate::lambertian::hemisphere::Direction;
 use crate::stream::Stream;
 
-/// The radiance that a surface reflects under a light: the estimator's draw is f_r L_i cos θ/p, or any other
-/// whose mean is L_r.
+/// The problem of estimating the radiance L_r that a surface reflects. A draw is f_r L_i cos θ/p, or any
+/// other whose mean is L_r.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reflection {
     /// The albedo ρ.
     pub albedo: f64,
-    /// The light.
+    /// The incoming radiance.
     pub sky: Sky,
 }
 
-/// A light, by which mistakes that look alike under a constant one are told apart. Nothing comes from below
-/// the horizon.
+/// Incoming radiance as a function of direction, 0 below the horizon. The different ones tell apart mistakes
+/// that look the same under a constant one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sky {
-    /// L_i = 1, as in a furnace: many mistakes pass it.
+    /// L_i = 1, a furnace test: many mistakes pass it.
     Even,
     /// L_i = cos θ
     Cosine,
     /// L_i = cos² θ
     CosineSquared,
-    /// L_i = 2 where φ < π: it sees azimuths that are not uniform.
+    /// L_i = 2 where φ < π: reveals azimuths that are not uniform.
     HalfLit,
-    /// L_i = 4 where cos² θ > ½ and φ < π: a lobe off the axis, which sees whether θ and φ are independent.
+    /// L_i = 4 where cos² θ > ½ and φ < π: a lobe off the axis, which reveals whether θ and φ are
+    /// independent.
     Lobe,
-    /// L_i = 16 where cos θ < ¼: grazing light, which cosine directions seldom find.
+    /// L_i = 16 where cos θ < ¼: grazing incidence, where cosine directions are rare.
     Grazing,
 }
 
@@ -57,7 +58,7 @@ impl Reflection {
 }
 
 static PROBLEMS: [Reflection; 7] = [
-    // the sheet's own: 3.4 and 3.5, and 3.2
+    // the sheet's own questions, 3.4 and 3.5, then 3.2
     Reflection { albedo: 0.8, sky: Sky::Cosine },
     Reflection { albedo: 0.8, sky: Sky::Even },
     Reflection { albedo: 0.61, sky: Sky::Even },
@@ -143,7 +144,7 @@ const fn words(question: Text, id: Text, name: Text, formula: Text, mend: Text) 
     Words { id, question, name, formula, mend }
 }
 
-/// A function of the direction with this cos θ and φ/2π.
+/// The value of f for the direction with this cos θ and φ/2π.
 fn toward(cos_theta: f64, turns: f64, f: impl Fn(&Direction) -> f64) -> f64 {
     Direction::polar(cos_theta, TAU * turns).map_or(f64::NAN, |at| f(&at))
 }
@@ -182,18 +183,18 @@ fn turned(
     })
 }
 
-/// Cosine directions, and another factor than ρ.
+/// Cosine directions, but another factor than ρ.
 fn albedo(words: Words, factor: fn(f64) -> f64) -> Mistake {
     Mistake::new(words, move |p: &Reflection, rng| {
         toward(cosine(rng.uniform()), rng.uniform(), |w| factor(p.albedo) * p.light(w))
     })
 }
 
-/// Directions of three uniform numbers, with the weight that goes with them.
+/// Directions computed from three uniform numbers, with a weight.
 fn spatial(words: Words, direction: fn([f64; 3]) -> Result<Direction>, weight: fn(f64) -> f64) -> Mistake {
     Mistake::new(words, move |p: &Reflection, rng| {
         let at = direction([rng.uniform(), rng.uniform(), rng.uniform()]);
-        // the origin itself, once in 2¹⁵⁹ draws, is no direction
+        // the origin itself, drawn once in 2¹⁵⁹ times, has no direction
         at.map_or(0.0, |w| p.albedo * weight(w.cos_theta()) * p.light(&w))
     })
 }
@@ -273,7 +274,7 @@ fn mistakes() -> Vec<Mistake> {
                 "clamped",
                 "each draw clamped to 1",
                 "min(2ρ L cos θ, 1)",
-                "clamp the picture, if you must, not the draws",
+                "clamp the final picture, not the draws",
             ),
             |p: &Reflection, rng| {
                 let draw = |w: &Direction| 2.0 * p.albedo * p.light(w) * w.cos_theta();

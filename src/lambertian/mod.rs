@@ -1,10 +1,10 @@
-//! Section 3: light reflected by a diffuse surface.
+//! Section 3: radiance reflected by a diffuse surface.
 //!
 //! Every integral is L_r = ∫ f_r L_i cos θ dω over the directions above the surface, with f_r = ρ/π.
-//! [`Lambertian`] has its estimators for any light; a [`Light`] is one for which the answer, and the variance
-//! of each estimator, is known exactly.
+//! [`Lambertian`] has its estimators for any incoming radiance L_i. A [`Light`] is an L_i for which L_r and
+//! the variance of each estimator are known exactly.
 //!
-//! One's own estimator for question 3.5 is checked by `examples/check_mine.rs`.
+//! `examples/check_mine.rs` checks your own estimator for question 3.5.
 
 #[cfg(feature = "workbook")]
 pub mod figures;
@@ -20,19 +20,20 @@ use crate::estimator::{Density, Estimator, f_over_p, from_uniforms};
 use crate::float::Extended;
 use crate::lambertian::hemisphere::{Direction, Hemisphere};
 
-/// A diffuse surface: it reflects the part ρ of the light that falls on it, the same radiance in all
-/// directions.
+/// A diffuse surface with BRDF f_r = ρ/π: it reflects the fraction ρ of the incoming power, with the same
+/// radiance in all directions.
 ///
-/// Its BRDF is f_r = ρ/π (worksheet 3; *Physically Based Rendering*, 4th ed., section 9.2), so the reflected
-/// radiance depends on the albedo ρ linearly and on the direction of view not at all (3.3). It emits nothing
-/// (3.1): outgoing radiance is L_r alone.
+/// The reflected radiance is linear in the albedo ρ and does not depend on the viewing direction (3.3). The
+/// surface emits nothing (3.1), so the outgoing radiance is L_r alone. (Worksheet 3; *Physically Based
+/// Rendering*, 4th ed., section 9.2.)
 ///
-/// A light is any function of the direction that it comes from, in W m⁻² sr⁻¹; results are in the same unit.
+/// Incoming radiance is any function of the direction it comes from, in W m⁻² sr⁻¹; results are in the same
+/// unit.
 ///
 /// ```
 /// use unbiased::{Budget, estimate, lambertian::Lambertian};
 ///
-/// // 3.5 under a light of 10 W m⁻² sr⁻¹ in one half of the sky
+/// // 3.5 with incoming radiance 10 W m⁻² sr⁻¹ from one half of the sky
 /// let surface = Lambertian::new(0.61)?;
 /// let half = surface.cosine_estimator(|direction| if direction.vector().x > 0.0 { 10.0 } else { 0.0 });
 /// let estimate = estimate(&half, Budget::Draws(100_000), 1)?;
@@ -45,16 +46,16 @@ pub struct Lambertian {
 }
 
 impl Lambertian {
-    /// The surface that reflects the part ρ of all light.
-    ///
-    /// # Errors
-    /// If ρ is not between 0 and 1: with ρ > 1 more light would leave the surface than reaches it.
+    /// A surface of albedo ρ.
     ///
     /// ```
     /// let error = unbiased::lambertian::Lambertian::new(1.2).unwrap_err();
     /// let sentence = "the albedo ρ must be between 0 and 1 (above 1 it would create energy), not 1.2";
     /// assert_eq!(error.to_string(), sentence);
     /// ```
+    ///
+    /// # Errors
+    /// If ρ is not between 0 and 1: above 1 the surface would create energy.
     pub fn new(albedo: f64) -> Result<Self> {
         let ok = (0.0..=1.0).contains(&albedo);
         let allowed = "between 0 and 1 (above 1 it would create energy)";
@@ -71,21 +72,21 @@ impl Lambertian {
         self.albedo / PI
     }
 
-    /// The emitted radiance L_e = 0 (worksheet 3.1): wood does not glow.
+    /// The emitted radiance L_e = 0 (worksheet 3.1).
     pub fn emitted(self) -> f64 {
         0.0
     }
 
-    /// L_r = ρ L_i under light of the same radiance L_i from everywhere (worksheet 3.2).
+    /// L_r = ρ L_i, for the same incoming radiance L_i from all directions (worksheet 3.2).
     pub fn reflected(self, radiance: f64) -> f64 {
         self.albedo * radiance
     }
 
-    /// The estimator f_r L_i cos θ/p(ω) of L_r, its directions drawn from any `density`: the general form, of
-    /// which [`uniform_estimator`](Self::uniform_estimator) and [`cosine_estimator`](Self::cosine_estimator)
-    /// are what is left when p is put in and cancelled on paper.
+    /// The estimator f_r L_i cos θ/p(ω) of L_r with directions drawn from any `density`.
+    /// [`uniform_estimator`](Self::uniform_estimator) and [`cosine_estimator`](Self::cosine_estimator) are
+    /// its simplified forms for two densities.
     ///
-    /// Directions below the horizon count as 0, so a density over the whole sphere will do, too.
+    /// Directions below the horizon contribute 0, so a density over the whole sphere works, too.
     pub fn estimator<const N: usize, L, D>(self, light: L, density: D) -> impl Estimator
     where
         L: Fn(&Direction) -> f64 + Sync,
@@ -108,24 +109,24 @@ impl Lambertian {
     }
 
     /// The estimator ρ L_i of L_r, directions drawn in proportion to cos θ (worksheet 3.5). The directions
-    /// must be *drawn* so: with uniform ones this formula is right under a light that does not depend on θ,
-    /// such as a constant one, and wrong under others.
+    /// must be *drawn* from that density: with uniform ones this formula is right if L_i does not depend on
+    /// θ, but wrong in general.
     pub fn cosine_estimator<L: Fn(&Direction) -> f64 + Sync>(self, light: L) -> impl Estimator {
         from_uniforms(move |u| self.albedo * light(&Hemisphere::Cosine.warp(u)))
     }
 }
 
-/// A light whose reflection is known in closed form, and the variance of each way to estimate it (worksheet
-/// 3.6).
+/// Incoming radiance for which the reflected radiance and the variance of each estimator have a closed form
+/// (worksheet 3.6).
 ///
 /// ```
 /// use unbiased::lambertian::hemisphere::Hemisphere::{Cosine, Uniform};
 /// use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
 ///
 /// let white = Lambertian::new(1.0)?;
-/// let even = CosinePower::new(0.0)?; // from everywhere alike: cosine has no variance at all
+/// let even = CosinePower::new(0.0)?; // constant: cosine directions have no variance
 /// assert_eq!((even.variance(white, Uniform), even.variance(white, Cosine)), (1.0 / 3.0, 0.0));
-/// let ring = RingLight::new(0.1)?; // along the horizon: cosine's variance is eight times the uniform one
+/// let ring = RingLight::new(0.1)?; // along the horizon: cosine directions have 8 times the variance
 /// let times = ring.variance(white, Cosine) / ring.variance(white, Uniform);
 /// assert!((times - 297.0 / 37.0).abs() < 1e-14);
 /// # Ok::<(), unbiased::Error>(())
@@ -137,11 +138,11 @@ pub trait Light: Sync {
     /// The radiance L_r = ∫ f_r L_i cos θ dω that `surface` reflects.
     fn reflected(&self, surface: Lambertian) -> f64;
 
-    /// The variance of one draw f_r L_i cos θ/p, with p = `hemisphere`; infinite where it is.
+    /// The variance of one draw f_r L_i cos θ/p, with p = `hemisphere`; +∞ if it is infinite.
     fn variance(&self, surface: Lambertian, hemisphere: Hemisphere) -> f64;
 }
 
-/// L_i = cos^a θ with a > −2: brighter overhead for a > 0, along the horizon for a < 0, and a constant light
+/// L_i = cos^a θ with a > −2: brighter overhead for a > 0, brighter along the horizon for a < 0, and constant
 /// for a = 0.
 ///
 /// | | value | finite for |
@@ -150,24 +151,24 @@ pub trait Light: Sync {
 /// | variance, uniform | 4ρ² (a+1)²/((2a+3)(a+2)²) | a > −3/2 |
 /// | variance, cosine | ρ² a²/((a+1)(a+2)²) | a > −1 |
 ///
-/// So neither density always wins: cosine has no variance at a = 0, uniform none at a = −1 (where cosine's is
-/// infinite), and at a = −1/2 they are equal. The forms 4ρ²\[1/(2a+3) − 1/(a+2)²\] and ρ²\[1/(a+1) −
-/// 4/(a+2)²\] are the same, but cancel.
+/// So neither density is always better. The variance of cosine directions is 0 at a = 0, that of uniform ones
+/// is 0 at a = −1, where the other is infinite, and they are equal at a = −1/2. The forms 4ρ²\[1/(2a+3) −
+/// 1/(a+2)²\] and ρ²\[1/(a+1) − 4/(a+2)²\] are the same, but cancel.
 ///
-/// # The ends
-/// No direction is drawn below the smallest cos θ of [`Hemisphere`], where 2^(−53(a+2)) of the light is for
-/// uniform directions and 2^(−26.5(a+2)) for cosine ones. That is less than 1.1e-8 wherever the variance is
-/// finite, but 2.5 % and 16 % at a = −1.9.
+/// # Directions left out
+/// No direction has a cos θ below the smallest one of [`Hemisphere`]. A fraction 2^(−53(a+2)) of L_r is left
+/// out with uniform directions and 2^(−26.5(a+2)) with cosine ones. This is less than 1.1e-8 wherever the
+/// variance is finite, but 2.5 % and 16 % at a = −1.9.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CosinePower {
     a: f64,
 }
 
 impl CosinePower {
-    /// The light L_i = cos^a θ.
+    /// Incoming radiance L_i = cos^a θ.
     ///
     /// # Errors
-    /// If a is not above −2, where a finite radiance is reflected, or not finite.
+    /// If a is not finite, or not above −2, below which the reflected radiance is infinite.
     pub fn new(a: f64) -> Result<Self> {
         let ok = a > -2.0 && a.is_finite();
         Ok(Self { a: require("the exponent a", a, ok, "above -2 and finite")? })
@@ -199,7 +200,7 @@ impl Light for CosinePower {
         };
         let deviation = zero * surface.albedo.into() / (a + one + one);
         if deviation.is_zero() {
-            0.0 // ρ = 0 has no variance even where it would be infinite
+            0.0 // for ρ = 0 even where the formula is infinite
         } else if room.is_positive() {
             (deviation.squared() / room).round()
         } else {
@@ -213,8 +214,8 @@ impl Light for CosinePower {
 /// L_r = ρε²; the variance is ρ²(4ε³/3 − ε⁴) with uniform directions and ρ²ε²(1 − ε²) with cosine ones.
 /// Cosine's is the larger for ε < 3/4: 297/37 = 8.03 times at ε = 0.1.
 ///
-/// The edge cos θ = ε is lit, so that ε = 1 is a constant light, the normal included. Cosine directions,
-/// whose cos θ is 1.05e-8 or more, never see a narrower ring.
+/// The edge cos θ = ε belongs to the ring, so ε = 1 is constant incoming radiance, the normal included.
+/// Cosine directions have cos θ ≥ 1.05e-8, so they miss any narrower ring.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RingLight {
     width: f64,

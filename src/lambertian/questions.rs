@@ -51,15 +51,15 @@ pub(crate) const QUESTIONS: &[Question] = &[
                     emitted plus reflected radiance, \
                     L_o = L_e + L_r with L_r = ∫ f_r L_i cos θ dω over the hemisphere. What is the cube's \
                     emitted radiance L_e?",
-        hint: "Who makes the light that leaves a piece of wood?",
+        hint: "Does wood emit light?",
         formula: "L_e = 0",
         latex: &[
             r"L_o(\mathbf p, \omega_o)
               = L_e(\mathbf p, \omega_o) + \int_{H^2} f_r\, L_i(\mathbf p, \omega)\cos\theta\,d\omega",
             r"L_e = 0",
         ],
-        answer: "Wood is no lamp: all light that leaves the cube came from elsewhere, so its outgoing \
-                 radiance is the reflected one.",
+        answer: "Wood does not emit light: all light that leaves the cube came from elsewhere, so its \
+                 outgoing radiance is the reflected radiance.",
         numbers: &[Number {
             part: "",
             symbol: "L_e",
@@ -138,9 +138,9 @@ pub(crate) const QUESTIONS: &[Question] = &[
         hint: "Look for ω_o in the BRDF ρ/π, and for ρ in the answer to 3.2.",
         formula: "L_r does not depend on ω_o, and is proportional to ρ in [0, 1]",
         latex: &[r"\frac{\partial L_r}{\partial \omega_o} = 0, \qquad L_r \propto \rho"],
-        answer: "The BRDF ρ/π knows no ω_o: that is what makes the surface Lambertian, equally bright from \
-                 every side. ρ, the albedo, is the share of the \
-                 incoming power that is reflected; above 1 the surface would create energy.",
+        answer: "The BRDF ρ/π does not depend on ω_o: that is what makes the surface Lambertian, equally \
+                 bright from every side. ρ, the albedo, is the share of the incoming power that is \
+                 reflected; above 1 the surface would create energy.",
         numbers: &[],
         wrong: &[
             Wrong {
@@ -162,9 +162,9 @@ pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "3.4",
         title: "Directions in proportion to the BRDF",
-        statement: "The light is no longer uniform. To estimate L_r, n directions are drawn over the \
-                    hemisphere from a density p(ω) proportional to the BRDF. \
-                    Write down the Monte Carlo estimator.",
+        statement: "The incoming radiance is no longer uniform. To estimate L_r, n directions are drawn \
+                    over the hemisphere from a density p(ω) proportional to the BRDF. Write down the Monte \
+                    Carlo estimator.",
         hint: "A density in proportion to a constant is a constant, and it integrates to 1 over the \
                hemisphere's 2π steradians.",
         formula: "L̂_r = 1/n Σ (ρ/π) L_i cos θ / (1/2π) = 2ρ/n Σ L_i(ω_j) cos θ_j",
@@ -172,9 +172,9 @@ pub(crate) const QUESTIONS: &[Question] = &[
               = \frac1n \sum_{j=1}^n \frac{\frac{\rho}{\pi} L_i(\omega_j)\cos\theta_j}{\frac{1}{2\pi}}
               = \frac{2\rho}{n}\sum_{j=1}^n L_i(\omega_j)\cos\theta_j"],
         answer: "The BRDF ρ/π is constant, so a density proportional to it is constant too, and integrates \
-                 to 1 over the hemisphere's 2π steradians: p = 1/(2π). \
-                 Each draw is the integrand over the density. The light here is L cos^a θ with a = «a», \
-                 whose reflection is 2ρL/(a + 2) = «2ρ L/(a + 2)».",
+                 to 1 over the hemisphere's 2π steradians: p = 1/(2π). Each draw is the integrand over the \
+                 density. The incoming radiance here is L cos^a θ with a = «a», for which L_r is 2ρL/(a + \
+                 2) = «2ρ L/(a + 2)».",
         numbers: &[Number {
             part: "",
             symbol: "c",
@@ -224,15 +224,15 @@ pub(crate) const QUESTIONS: &[Question] = &[
         title: "Cosine-weighted directions",
         statement: "In practice directions are drawn with density p(ω) = cos θ/π. What is the estimator for \
                     n directions now?",
-        hint: "Put the new density under the same integrand, and cancel on paper what cancels.",
+        hint: "Divide the same integrand by the new density, and simplify.",
         formula: "L̂_r = ρ/n Σ L_i(ω_j)",
         latex: &[r"\hat L_r
               = \frac1n \sum_{j=1}^n \frac{\frac{\rho}{\pi}
               L_i(\omega_j)\cos\theta_j}{\frac{\cos\theta_j}{\pi}}
               = \frac{\rho}{n}\sum_{j=1}^n L_i(\omega_j)"],
-        answer: "The cosine and the π cancel, on paper: at cos θ → 0 the quotient of the two would be 0/0. \
-                 The directions must be drawn from the new density, \
-                 cos θ = √(1 − U); changing the formula alone is the classic mistake.",
+        answer: "The cosine and the π cancel. Simplify before computing: at cos θ = 0 the quotient would be \
+                 0/0. The directions must be drawn from the new density, cos θ = √(1 − U); changing the \
+                 formula alone is the classic mistake.",
         numbers: &[Number {
             part: "",
             symbol: "c",
@@ -283,12 +283,12 @@ pub(crate) const QUESTIONS: &[Question] = &[
               = \frac{\rho^2a^2}{(a+1)(a+2)^2}",
         ],
         answer: "The rate 1/√n is the same; the constant is smaller when the density is close to the \
-                 integrand's shape, and the integrand has a factor cos θ. The \
-                 variance is 0 exactly when p is proportional to an integrand of one sign: cosine under a \
-                 uniform sky. But cosine does not always win: under the light cos^a θ both are equal \
-                 at a = −½, and as a → −1 uniform directions have no variance and cosine ones an infinite \
-                 one. With light only along the horizon, cos θ < ε, cosine's variance is \
-                 the larger for ε < ¾, and «(1 − ε²)/(4ε/3 − ε²)» times uniform's at ε = «ε».",
+                 integrand's shape, and the integrand has a factor cos θ. The variance is 0 exactly when p \
+                 is proportional to an integrand of one sign: cosine under a uniform sky. But cosine does \
+                 not always win: for the incoming radiance cos^a θ both are equal at a = −½, and as a → −1 \
+                 uniform directions have no variance and cosine ones an infinite one. With light only along \
+                 the horizon, cos θ < ε, cosine's variance is the larger for ε < ¾, and «(1 − ε²)/(4ε/3 − \
+                 ε²)» times uniform's at ε = «ε».",
         numbers: &[],
         wrong: &[
             Wrong {
@@ -298,7 +298,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
             Wrong { answer: "it is always better", slip: "not where the light comes from near the horizon" },
             Wrong {
                 answer: "it avoids wasted samples, so it is less biased",
-                slip: "both are unbiased; waste is variance",
+                slip: "both are unbiased; wasted samples increase the variance",
             },
         ],
         on_the_original: Some(

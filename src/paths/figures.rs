@@ -1,4 +1,4 @@
-//! Figures of section 4 with numbers: convergence, occlusion, bounces, and what the ways of sampling cost.
+//! Plots of section 4: convergence, occlusion, number of bounces, and the cost of the ways of sampling.
 
 pub use super::side_view::paths_drawn;
 
@@ -15,7 +15,8 @@ use crate::plot::{Axis, Figure, Ink, Marker, Panel, Plot, Side};
 use crate::run::{Budget, Run, estimate};
 use crate::stream::Stream;
 
-/// 4.3: running means of three estimators of the part of two bounces, with the exact value where it is known.
+/// Figure for 4.3: running means of three estimators of the two-bounce radiance, with the exact value if
+/// known.
 ///
 /// ```
 /// use unbiased::paths::room::{BoxRoom, Scene};
@@ -38,7 +39,7 @@ pub fn two_bounces_converging(room: &BoxRoom, seed: u64) -> Result<Figure> {
     let reference = estimate(&sampled, Budget::Draws(LAST), seed)?;
     let truth = room.two_bounces();
     let middle = truth.unwrap_or(reference.mean());
-    // nothing to see in the dark, but axes need a height
+    // if no light reaches p the axes still need a height
     let height = if middle > 0.0 { middle } else { 1.0 };
     let mut panel = Panel::new(
         "Light after two bounces",
@@ -79,7 +80,7 @@ pub fn two_bounces_converging(room: &BoxRoom, seed: u64) -> Result<Figure> {
         .draw()
 }
 
-/// The means of the first n draws, at 25 n a decade from 10 on.
+/// The means of the first n draws, for 25 n per decade from 10 on.
 fn running_means(estimator: &dyn Estimator, last: u64, seed: u64) -> Vec<[f64; 2]> {
     let mut rng = Stream::new(seed, 0);
     let (mut sum, mut points, mut next) = (Estimate::new(), Vec::new(), 10.0);
@@ -93,8 +94,8 @@ fn running_means(estimator: &dyn Estimator, last: u64, seed: u64) -> Vec<[f64; 2
     points
 }
 
-/// 4.3: what becomes of an estimate when occluded directions are left out of n: the light stands where cos θ
-/// > 0.8, and something dark fills the directions below cos θ = c.
+/// Figure for 4.3: how an estimate changes if occluded directions are left out of n. Radiance 1 comes from
+/// cos θ > 0.8, and a black occluder covers the directions with cos θ < c.
 ///
 /// ```
 /// let figure = unbiased::paths::figures::occluded_fraction(10_000, 1)?;
@@ -106,7 +107,7 @@ fn running_means(estimator: &dyn Estimator, last: u64, seed: u64) -> Vec<[f64; 2
 /// If it cannot be drawn.
 pub fn occluded_fraction(draws: u64, seed: u64) -> Result<Figure> {
     const ABOVE: f64 = 0.8;
-    let truth = 1.0 - ABOVE * ABOVE; // of a white surface under a light of radiance 1
+    let truth = 1.0 - ABOVE * ABOVE; // radiance 1 from cos θ > 0.8, ρ = 1
     let mut panel = Panel::new(
         "What an occluded direction counts",
         Axis::linear("occluded fraction c of directions", 0.0, 0.85),
@@ -146,14 +147,14 @@ pub fn occluded_fraction(draws: u64, seed: u64) -> Result<Figure> {
         .draw()
 }
 
-/// A way to find the light whose variance is finite: by chance where the light touches the walls, and its
-/// samples near them weigh without bound.
+/// A way to find the light with finite variance: by chance if the light touches the walls, where the weights
+/// of light samples are unbounded, else by sampling it.
 fn find_light(room: &BoxRoom) -> Result<FindLight> {
     let sampled = Paths::new(*room, Bounces::UpTo(2), Cosine, FindLight::BySampling)?;
     Ok(if sampled.doubt().is_none() { FindLight::BySampling } else { FindLight::ByChance })
 }
 
-/// 4.3: the light by the number of bounces, exact where it is known, and else from ten million paths each.
+/// Figure for 4.3: radiance by the number of bounces, exact where known, else from ten million paths each.
 ///
 /// ```no_run
 /// use unbiased::paths::room::{BoxRoom, Scene};
@@ -188,12 +189,12 @@ pub fn radiance_by_bounces(room: &BoxRoom, seed: u64) -> Result<Figure> {
             found.push([at, mean, mean - error, mean + error]);
         }
     }
-    // k, the value, and between what it lies
+    // k, the value, and the ends of its interval
     let all: Vec<_> = exact.iter().map(|&[k, y]| [k, y, y, y]).chain(found.iter().copied()).collect();
     let lit = all.iter().map(|[_, y, ..]| *y).filter(|y| *y > 0.0);
     let (least, most) =
         lit.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), y| (least.min(y), most.max(y)));
-    // in the dark there is nothing to see, but axes need a height
+    // if no light reaches p the axes still need a height
     let (least, most) = if most > 0.0 { (least, most) } else { (1.0, 1.0) };
     let (low, high) = (10f64.powf((0.8 * least).log10().floor()), 10f64.powf((2.0 * most).log10().ceil()));
     let mut panel = Panel::new(
@@ -207,7 +208,7 @@ pub fn radiance_by_bounces(room: &BoxRoom, seed: u64) -> Result<Figure> {
     panel.bars("estimated", Ink::Vermilion, 0.7, above_0(&found).iter().map(|[k, y, ..]| [*k, *y]));
     panel.error_bars("estimated", Ink::Black, Marker::Dot, above_0(&found));
     for &[k, y, ..] in &all {
-        // a bar of no height is at the foot of the axis
+        // the label of a bar of no height stands at the foot of the axis
         let text = typeset(y, 3);
         panel.text(Ink::Black, [k, y.max(low)], Side::Above, &text);
     }
@@ -230,12 +231,12 @@ pub fn radiance_by_bounces(room: &BoxRoom, seed: u64) -> Result<Figure> {
         .draw()
 }
 
-/// One estimator, with what a path costs, and how far the means of n paths are from the reference.
+/// One estimator: the cost of a path, and the error of means of n paths.
 struct Series {
     label: &'static str,
     ink: Ink,
     marker: Marker,
-    /// a path's standard deviation, and how far its mean is from the reference where that is no noise
+    /// a path's standard deviation, and its bias if that is significant; both relative to the truth
     spread: f64,
     bias: f64,
     rays: f64,
@@ -258,7 +259,7 @@ impl Series {
         for n in [16u64, 128, 1024] {
             let mut square = 0.0;
             for replicate in 0..REPLICATES {
-                // each replicate a stream of its own
+                // one stream per replicate
                 let mut rng = Stream::new(seed, (n << 32) + replicate);
                 let mean = (0..n).map(|_| paths.draw(&mut rng)).sum::<f64>() / n as f64;
                 square += (mean - truth).powi(2) / REPLICATES as f64;
@@ -277,7 +278,7 @@ impl Series {
         })
     }
 
-    /// With this bias, unless it is noise.
+    /// With this bias, if it is significant.
     fn biased(mut self, [mean, error]: [f64; 2], [truth, truth_error]: [f64; 2]) -> Self {
         if (mean - truth).abs() > 4.0 * error.hypot(truth_error) {
             self.bias = (mean - truth) / truth;
@@ -285,7 +286,7 @@ impl Series {
         self
     }
 
-    /// Whether none of its paths found any light: what is known of it then are its points.
+    /// Whether none of the paths found the light: only the measured points are drawn then.
     fn found_none(&self) -> bool {
         self.spread == 0.0
     }
@@ -295,11 +296,11 @@ impl Series {
     }
 }
 
-/// The light of `paths`, with its standard error: of two million paths if they are short, of fewer if they
-/// are long, but a hundred thousand at least.
+/// The radiance of `paths` with its standard error, from two million paths if they are short, fewer if they
+/// are long, and at least a hundred thousand.
 fn reference(paths: &Paths, seed: u64) -> Result<[f64; 2]> {
     const FEWEST: u64 = 100_000;
-    // a seed of its own, so that no error is shared with what is measured against it
+    // a different seed, so that the reference's error is independent of what is measured against it
     let run = Run::new(seed ^ 0x5eed);
     let rays = run.estimate(paths, Budget::Draws(1000))?.cost.evaluations as f64 / 1000.0;
     let draws = ((2e7 / rays.max(1.0)) as u64).clamp(FEWEST, 2_000_000);
@@ -307,12 +308,12 @@ fn reference(paths: &Paths, seed: u64) -> Result<[f64; 2]> {
     Ok([found.mean(), found.std_error().unwrap_or(0.0)])
 }
 
-/// 4.3: RMSE relative to the truth, for the four ways of sampling and for roulette against truncation: once
-/// against rays, which are the same on every machine, and once against this machine's seconds. None where p
-/// gets no light.
+/// Figures for 4.3: RMSE relative to the truth, for the four ways of sampling and for roulette against
+/// truncation. One figure is against rays, which are the same on every machine, the other against seconds on
+/// this machine. Empty if p gets no light.
 ///
-/// Ways whose variance may be infinite, [`Estimator::doubt`], are left out; and so is all light where an
-/// albedo is too large for absorption to end a path.
+/// Ways whose variance may be infinite, [`Estimator::doubt`], are left out. So are all estimates of all
+/// bounces if an albedo is too large for absorption to end a path.
 ///
 /// ```no_run
 /// use unbiased::paths::room::{BoxRoom, Scene};
@@ -350,7 +351,7 @@ pub fn path_errors(room: &BoxRoom, seed: u64) -> Result<Vec<Figure>> {
         }
     }
     let mut endings = Vec::new();
-    // an albedo too large for the weight to end a path: nothing else is known to be right then
+    // fails if an albedo is too large for absorption to end paths; there is no other reference then
     if let Ok(by_throughput) = paths(Bounces::AllByThroughput) {
         let all = reference(&by_throughput, seed)?;
         for (label, ink, marker, bounces) in [
@@ -397,7 +398,7 @@ fn error_figure(
         if all.is_empty() {
             continue;
         }
-        // where light is hard to find all of it lies higher
+        // if the light is hard to find, errors are larger
         let highest =
             all.iter().flat_map(|series| &series.measured).fold(0.0, |most: f64, [_, rmse]| most.max(*rmse));
         let shift = (1.6 * highest / top).max(1.0);

@@ -1,8 +1,8 @@
 //! Mistakes in following paths through the box room.
 //!
-//! A wrong estimator is a right one followed in a way of its own. One light sample shared by all vertices of
-//! a path is no mistake: it is independent of every direction, so the mean stays; one that shares the
-//! *directions'* random numbers is.
+//! A wrong estimator is the right one with one change in how a path is followed. One light sample shared by
+//! all vertices of a path is no mistake: it is independent of every direction, so the mean stays the same.
+//! One that reuses the random numbers of the *directions* is.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -15,8 +15,7 @@ use crate::lambertian::hemisphere::Hemisphere;
 use crate::paths::room::{BoxRoom, Scene};
 use crate::stream::Stream;
 
-/// The light that leaves a room's point p after some bounces: the estimator's draw is one of an estimate of
-/// it.
+/// The problem of estimating the radiance that leaves a room's point p after given numbers of bounces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LightOfPaths {
     /// The room, which says where p is, what emits and what the albedos are.
@@ -26,18 +25,17 @@ pub struct LightOfPaths {
 }
 
 impl LightOfPaths {
-    /// How many bounces count, the first and the last counted in: `2..=2` is the light of exactly two,
-    /// `0..=3` that of up to three.
+    /// The numbers of bounces that count: `2..=2` is exactly two, `0..=3` is up to three.
     pub fn bounces(&self) -> RangeInclusive<u32> {
         self.first..=self.last
     }
 
-    /// The light after k bounces, where it is a closed form or an integral of one.
+    /// The radiance after k bounces, where it is a closed form or an integral of one.
     fn after(&self, k: u32) -> f64 {
         let (room, scene) = (&self.room, self.room.scene());
         match k {
             0 => room.emitted(&room.point()),
-            // a furnace: from the cube's top the next vertex is on a wall
+            // a furnace: from the cube's top the next vertex is always on a wall
             _ if scene.light_half_width == 0.0 => {
                 scene.emission * room.albedo(&room.point()) * scene.wall_albedo.powi(k as i32 - 1)
             }
@@ -49,7 +47,7 @@ impl LightOfPaths {
 }
 
 static PROBLEMS: LazyLock<Vec<LightOfPaths>> = LazyLock::new(|| {
-    // odd numbers, p off the axes: a light of area 1 hides its area, equal albedos hide which was taken
+    // generic numbers, p off the axes: an area of 1 would hide a missing area, equal albedos a wrong one
     let odd = Scene {
         wall_albedo: 0.61,
         cube_albedo: 0.37,
@@ -63,9 +61,9 @@ static PROBLEMS: LazyLock<Vec<LightOfPaths>> = LazyLock::new(|| {
     [
         (Scene::default(), 2..=2),
         (odd, 1..=1),
-        // the cube hides from this p nearly half of the light
+        // seen from this p, the cube hides nearly half of the light
         (Scene { point: [0.7, 0.1, 0.0], ..odd }, 1..=1),
-        // grazing light, high on a wall
+        // grazing incidence, high on a wall
         (Scene { point: [2.0, 0.4, 3.7], ..odd }, 1..=1),
         (odd, 2..=2),
         (furnace, 0..=2),
@@ -161,7 +159,7 @@ const ABOUT: About = About {
            p = (x, y, z) lies on a face; bounce 0 is what p itself emits.",
 };
 
-/// A right estimator followed in a wrong way.
+/// The right estimator with one change.
 fn followed([question, id, name, formula, mend]: [&'static str; 5], way: Way) -> Mistake {
     let words = Words { id, question, name, formula, mend };
     Mistake::new(words, move |p: &LightOfPaths, rng| way.draw(p, rng))
@@ -176,8 +174,8 @@ fn mistakes() -> Vec<Mistake> {
     let direction = "a bounce weighs f_r cos θ/p(ω), with the p that ω was drawn from";
     let product = "the throughput is the product of all weights so far";
     let vertices = "k counts the vertices between light and eye";
-    let emits = "every vertex that is asked for adds its L_e times the throughput";
-    let chance = "end a path by chance, and divide by the chance of going on";
+    let emits = "every vertex that counts adds its L_e times the throughput";
+    let chance = "end a path at random, and divide by the probability of going on";
     let sampled =
         |id, name, formula, mend, sample| followed(["4.3", id, name, formula, mend], Way { sample, ..RIGHT });
     let counted = |question, id, name, formula, mend, counted| {
@@ -225,7 +223,7 @@ fn mistakes() -> Vec<Mistake> {
             |p: &LightOfPaths, rng| {
                 let scene = p.room.scene();
                 if p.first == p.last && scene.light_half_width > 0.0 {
-                    // each path that finds the light brings the same, so there is no need to look
+                    // each path that finds the light contributes the same, so none has to be traced
                     return scene.radiance
                         * p.room.albedo(&p.room.point())
                         * scene.wall_albedo.powi(p.last as i32 - 1);
@@ -235,7 +233,7 @@ fn mistakes() -> Vec<Mistake> {
             },
         ),
         way("counted-twice", "the light found by chance and sampled", "both added",
-            "where the light is sampled, a ray that happens on it adds nothing",
+            "where the light is sampled, a ray that hits it adds nothing",
             Way { chance: true, ..RIGHT }),
         way("no-pi-light", "1/π of the BRDF forgotten at the light sample", "ρ L cos θ cos θ′ A/r²",
             "f_r = ρ/π", Way { last: |albedo, _| PI * albedo, ..RIGHT }),
@@ -279,7 +277,7 @@ fn mistakes() -> Vec<Mistake> {
         ended("roulette-bare", "roulette uncompensated", "goes on with chance 4/5, nothing divided",
             Way { coin: Some(1.0), ..RIGHT }),
         followed(["5", "roulette-twice", "roulette compensated twice", "ρ/q² a bounce",
-            "divide by q once, where the coin falls"],
+            "divide by q once for each coin"],
             Way { coin: Some(1.0 / (GOES_ON * GOES_ON)), ..RIGHT }),
     ]
 }

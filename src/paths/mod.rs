@@ -1,35 +1,35 @@
-//! Section 4: light along paths in the [box room](room).
+//! Section 4: radiance along paths in the [box room](room).
 //!
 //! # From one bounce to all
-//! Light leaves p towards the eye in the direction ω_o as (*the rendering equation*, Kajiya 1986)
+//! The radiance that leaves p towards the eye, in direction ω_o, is (*the rendering equation*, Kajiya 1986)
 //!
 //! > L_o(p, ω_o) = L_e(p) + ∫ f_r L_i(p, ω) cos θ dω.
 //!
-//! - **3.4** draws ω_i and averages f_r L_i cos θ_i/p(ω_i), where L_i is a light that is known.
-//! - **4.3** In a room, what comes from ω_i left another point: L_i(p, ω_i) = L_o(p_j, −ω_i), p_j being the
-//!   first point that a ray from p meets. So
+//! - **3.4** draws ω_i and averages f_r L_i cos θ_i/p(ω_i), for a known incoming radiance L_i.
+//! - **4.3** In a room, L_i(p, ω_i) is the radiance that leaves another point: L_i(p, ω_i) = L_o(p_j, −ω_i),
+//!   where p_j is the first point that a ray from p hits. So
 //!
 //!   > L̂_o(p, ω_o) = 1/n Σ f_r L_o(p_j, −ω_ij) cos θ_ij/p(ω_ij).
 //!
-//!   If L_o(p_j) is the light reflected *once* at p_j, this is the part of two bounces. What matters is its
-//!   mean: an unbiased estimate L̂_o(p_j) in its place, drawn afresh for each ω_ij, leaves the whole
-//!   unbiased. [`reflected`] is this estimator, with any L̂_o plugged in.
-//! - **5** If L̂_o(p_j) is this very estimator, the path goes on from p_j to p_j′ and for ever; written out,
-//!   without recursion, it is a loop along one path with the product of its throughputs f_r cos θ/p. Roulette
-//!   ends it: it goes on with probability q, its throughput divided by q, so the mean stays. [`Paths`] is
-//!   that loop.
+//!   If L_o(p_j) is the radiance reflected *once* at p_j, this is the two-bounce radiance. L_o(p_j) may be
+//!   replaced by an unbiased estimate L̂_o(p_j), drawn anew for each ω_ij: the result stays unbiased.
+//!   [`reflected`] is this estimator, for any L̂_o.
+//! - **5** If L̂_o(p_j) is this same estimator, the path goes on from p_j to p_j′ without end. Written as a
+//!   loop, it follows one path and multiplies its throughput by f_r cos θ/p at every vertex. Russian roulette
+//!   ends it: the path goes on with probability q, and its throughput is divided by q, so the mean stays the
+//!   same. [`Paths`] is that loop.
 //!
 //! # What a bounce is
-//! A bounce is a vertex of the path between the light and the eye. L_o(p) = Σ L_k, with L_k the light after k
-//! bounces: k = 0 is what p itself emits, k = 1 what comes from the light to p at once, k = 2 what comes by
-//! way of one other point p_j.
+//! A bounce is a vertex of the path between the light and the eye. L_o(p) = Σ L_k, where L_k is the radiance
+//! after k bounces: k = 0 is what p itself emits, k = 1 comes from the light to p directly, and k = 2 by way
+//! of one other point p_j.
 //!
 //! # How the light is found
-//! By chance, when a path happens on it, or by a sample of its area at every vertex (*next-event estimation*,
-//! Coveyou et al. 1967): with y uniform on the light of area A, and V = 1 where the cube leaves the view
-//! free, f_r L_e V cos θ cos θ_y A/r² in place of a ray. Both are unbiased. What is found in one way must not
-//! be found in the other, too: where the light is sampled, a path that happens on it adds nothing, and what
-//! the faces emit is found by chance always.
+//! By chance (*BSDF sampling*), when a path hits the light, or by sampling a point of it at every vertex
+//! (*next-event estimation*, Coveyou et al. 1967): f_r L_e V cos θ cos θ_y A/r², with y uniform on the light
+//! of area A, and V = 1 if y is visible, else 0. Both are unbiased. Nothing may be counted in both ways:
+//! where the light is sampled, a path that hits it adds nothing. What the faces emit is always found by
+//! chance.
 
 use glam::DVec3;
 use rand::distr::Distribution;
@@ -53,44 +53,44 @@ mod side_by_side;
 mod side_view;
 mod way;
 
-/// How a path finds the light.
+/// How a path finds the light: by BSDF sampling alone, or by next-event estimation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum FindLight {
-    /// When a ray happens on it.
+    /// When a ray hits it.
     ByChance,
     /// By a point drawn uniformly on it, at every vertex.
     BySampling,
 }
 
 impl FindLight {
-    /// Both, to loop over.
+    /// Both.
     pub const ALL: [Self; 2] = [Self::ByChance, Self::BySampling];
 }
 
-/// Which bounces are counted, and what ends a path.
+/// Which bounces count, and what ends a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bounces {
-    /// The light after exactly this many.
+    /// The radiance after exactly this many bounces.
     Exactly(u32),
-    /// The light after 0, 1, … up to this many.
+    /// The radiance after 0, 1, … up to this many bounces.
     UpTo(u32),
-    /// All light. A path goes on with this probability q after every vertex.
+    /// The radiance of all bounces. A path goes on with this probability q after every vertex.
     All(f64),
-    /// All light. A path goes on with probability min(1, w), w being its throughput: it becomes 1 if the path
-    /// goes on.
+    /// The radiance of all bounces. A path of throughput w goes on with probability min(1, w). If w < 1 and
+    /// it goes on, its throughput becomes 1.
     AllByThroughput,
 }
 
-/// The most bounces that can be counted one by one.
+/// The largest number of bounces that can be asked for.
 pub const MOST_BOUNCES: u32 = 64;
 
-/// The largest probability of going on: the mean number of bounces is q/(1 − q).
+/// The largest continuation probability: the mean number of bounces is q/(1 − q).
 const MOST_Q: f64 = 0.9999;
 
-/// The largest albedo that ends paths by itself, in a thousand bounces or so.
+/// The largest albedo at which absorption alone ends paths, after a thousand bounces or so.
 const MOST_ALBEDO: f64 = 0.999;
 
-/// The light that leaves p, estimated along one random path a draw, in W m⁻² sr⁻¹.
+/// The radiance that leaves p, in W m⁻² sr⁻¹. A draw is its estimate along one random path.
 ///
 /// ```
 /// use unbiased::paths::room::{BoxRoom, Scene};
@@ -107,16 +107,16 @@ const MOST_ALBEDO: f64 = 0.999;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Paths {
     room: BoxRoom,
-    /// The fewest and the most bounces that count.
+    /// The smallest and the largest number of bounces that count.
     counted: [u32; 2],
     ending: Ending,
     directions: Hemisphere,
     light: FindLight,
-    /// What [`numbers_of_each`](Self::numbers_of_each) found.
+    /// The result of [`numbers_of_each`](Self::numbers_of_each).
     numbers: u64,
 }
 
-/// What ends a path before its bounces do.
+/// What ends a path, apart from its largest number of bounces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Ending {
     Never,
@@ -128,9 +128,9 @@ impl Paths {
     /// Paths from the room's point p.
     ///
     /// # Errors
-    /// If there are more than [`MOST_BOUNCES`] to be counted; if q is not in (0, 0.9999\], for at 1 a path
-    /// would never end; or if paths end by their throughput and an albedo is above 0.999, where they hardly
-    /// would.
+    /// If more than [`MOST_BOUNCES`] are to be counted; if q is not in (0, 0.9999\], as a path with q = 1
+    /// never ends; or if paths end by their throughput and an albedo is above 0.999, as they would be too
+    /// long.
     pub fn new(room: BoxRoom, bounces: Bounces, directions: Hemisphere, light: FindLight) -> Result<Self> {
         let count = |k: u32| {
             require_count(
@@ -170,20 +170,15 @@ impl Paths {
         Ok(Self { numbers: paths.numbers_of_each(), ..paths })
     }
 
-    /// The same paths computed in `f32`, in about half the time, along the same paths from the same numbers:
-    /// speed against accuracy. Draws are summed in `f64` all the same.
+    /// The same paths computed in `f32`: about twice as fast and less accurate. They take the same random
+    /// numbers, and draws are summed in `f64`.
     ///
-    /// Its mean is off by rounding, and by the coarser grid k·2⁻²⁴ of its uniform numbers. In the sheet's
-    /// scene no such bias was seen: with cosine directions and the light sampled it is 0 ± 7e-7 of the light
-    /// of one bounce in 10⁹ paths, and 0 ± 1.6e-5 of that of up to fifteen in 1.5·10⁸.
+    /// The mean is biased by rounding, and by the coarser grid k·2⁻²⁴ of the uniform numbers. No such bias
+    /// was measured in the sheet's scene: with cosine directions and next-event estimation it is 0 ± 7e-7 of
+    /// the one-bounce radiance in 10⁹ paths, and 0 ± 1.6e-5 of that of up to fifteen bounces in 1.5·10⁸.
     ///
-    /// Radiances of any size that a scene allows are scaled on the way. What cannot be scaled is what lies
-    /// between the strongest part of the light and the weakest.
-    ///
-    /// # Errors
-    /// If a path's throughput would leave `f32`: if the smallest albedo but 0 is below 1e-25 to the power of
-    /// the fewest bounces that count (two, if fewer do and so many may); or if the faces emit less than 1e-10
-    /// of L_e A/π, or of L_e where light is found by chance.
+    /// Radiances are scaled, so any size that a scene allows will do. What cannot be scaled is the ratio of
+    /// the strongest and the weakest contribution.
     ///
     /// ```
     /// use unbiased::paths::room::{BoxRoom, Scene};
@@ -197,6 +192,11 @@ impl Paths {
     /// assert!(found.z(0.2728543591976926).unwrap().abs() < 5.0);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If a path's throughput could leave the range of `f32`: if the smallest albedo above 0, to the power of
+    /// the smallest number of bounces that counts (two, if fewer count and two may), is below 1e-25; or if
+    /// the faces emit less than 1e-10 of L_e A/π, or of L_e if the light is found by chance.
     pub fn in_f32(self) -> Result<PathsF32> {
         let scene = self.room.scene();
         let albedos = [scene.wall_albedo, scene.cube_albedo].into_iter().filter(|albedo| *albedo > 0.0);
@@ -218,7 +218,8 @@ impl Paths {
         self.light == FindLight::BySampling && self.room.scene().light_half_width > 0.0
     }
 
-    /// What a path of throughput 1 finds where it finds the light, but for the geometry of a sample.
+    /// What a path of throughput 1 finds where it finds the light, without the geometry factor of a light
+    /// sample.
     fn light(&self) -> f64 {
         match self.light {
             FindLight::BySampling => power(&self.room),
@@ -227,8 +228,8 @@ impl Paths {
         }
     }
 
-    /// A power of two of the size of the light and of what the faces emit: divided by it, both are in reach
-    /// of `f32`, and no bit is lost.
+    /// A power of two of the size of the light's radiance and the faces' emission. Dividing by it is exact,
+    /// and brings both into the range of `f32`.
     fn scale(&self) -> f64 {
         let exponent = self.light().max(self.room.scene().emission).to_bits() & (0x7ff << 52);
         if exponent == 0 { 1.0 } else { f64::from_bits(exponent) }
@@ -249,12 +250,12 @@ impl Paths {
         &self.room
     }
 
-    /// The most bounces that are counted, `u32::MAX` without a limit.
+    /// The largest number of bounces that counts, `u32::MAX` without a limit.
     pub fn most_bounces(&self) -> u32 {
         self.counted[1]
     }
 
-    /// What [`doubt`](Estimator::doubt) says.
+    /// The reason that [`doubt`](Estimator::doubt) gives.
     fn reason(&self) -> Option<String> {
         let albedo = most_albedo(&self.room);
         let (spread, shown) = match self.directions {
@@ -270,7 +271,8 @@ impl Paths {
                     "{infinite} q = {q} is not above {shown} = {growth:.4} for the largest albedo"
                 ));
             }
-            // cosine's throughputs never exceed 1 then, and uniform ones grow while they do
+            // throughputs of cosine directions never exceed 1 then, and those of uniform ones grow while they
+            // do
             Ending::ByThroughput if self.directions == Hemisphere::Uniform && growth >= 1.0 => {
                 return Some(format!(
                     "{infinite} the squared throughput of a path grows by {shown} = {growth:.4} a bounce for \
@@ -296,7 +298,7 @@ impl Paths {
             ),
         ];
         let draws: f64 = reasons.iter().map(|(kurtosis, _)| kurtosis).product();
-        // what adds no digit is no reason
+        // leave out reasons that do not matter
         let told: Vec<&str> =
             reasons.iter().filter(|(kurtosis, _)| *kurtosis >= 10.0).map(|(_, reason)| *reason).collect();
         (draws >= A_MILLION).then(|| {
@@ -305,25 +307,25 @@ impl Paths {
         })
     }
 
-    /// E X⁴/(E X²)² of a light sample at a vertex of a wall, roughly, where the light comes near it.
+    /// An approximate E X⁴/(E X²)² of a light sample at a wall vertex, for a light close to the wall.
     fn kurtosis_of_samples(&self) -> f64 {
         let beside = Face::ROOM_HALF_WIDTH - self.room.scene().light_half_width;
-        // farther away it is the whole of the light that counts, not its edge
+        // farther away the whole light counts, not only its edge
         let near = self.light == FindLight::BySampling && self.counted[1] > 1 && beside < 0.5;
         if near { 8.0 / beside.powi(3) } else { 1.0 }
     }
 
-    /// E X⁴/(E X²)² of what a path that is never ended finds, or more, in a room where every vertex sees the
-    /// same light.
+    /// An upper bound for E X⁴/(E X²)² of a path without roulette, in a room where every vertex sees the same
+    /// irradiance.
     fn kurtosis_of_throughputs(&self) -> f64 {
         if self.ending != Ending::Never || self.directions == Hemisphere::Cosine {
             return 1.0;
         }
         let albedo = most_albedo(&self.room);
-        // light that is sampled needs a direction less
+        // with next-event estimation one direction less is drawn
         let less = u32::from(self.samples_light() && self.room.scene().emission == 0.0);
         let [fewest, most] = self.counted.map(|bounces| bounces.saturating_sub(less) as i32);
-        // relative to the term of the fewest, as only their ratios count
+        // relative to the term of the fewest bounces, as only ratios count
         let sum = |factor: f64| {
             let terms = (fewest..=most).map(|k| albedo.powi(k - fewest) * factor.powf(f64::from(k)));
             terms.fold([0.0, 0.0], |[sum, squares], term| [sum + term, squares + term * term])
@@ -335,8 +337,8 @@ impl Paths {
         ratio * ratio
     }
 
-    /// The part of the paths that find the light by chance, roughly: a bounce after the other, the light's
-    /// part of all faces.
+    /// The approximate fraction of paths that hit the light: at each bounce, the light's share of the area of
+    /// all faces.
     fn found_by_chance(&self) -> f64 {
         let scene = self.room.scene();
         let dark = scene.light_half_width == 0.0 || scene.emission > 0.0 || self.counted[1] == 0;
@@ -349,14 +351,14 @@ impl Paths {
         (self.room.light_area() / area * bounces).min(1.0)
     }
 
-    /// An unbiased estimate of the radiance that leaves `vertex`, in W m⁻² sr⁻¹, along one random path:
-    /// L̂_o(p_j) to plug in for [`reflected`], which has an example.
+    /// An unbiased estimate of the radiance that leaves `vertex`, in W m⁻² sr⁻¹, along one random path. It
+    /// can be passed to [`reflected`] as L̂_o(p_j); see the example there.
     #[inline]
     pub fn light_from(&self, vertex: &Vertex, rng: &mut Stream) -> f64 {
         self.walk(vertex, rng, |_| ())
     }
 
-    /// One path with its vertices, for drawing: the same that [`draw`](Estimator::draw) takes from the same
+    /// One path with its vertices, for drawing: the one that [`draw`](Estimator::draw) follows with the same
     /// stream.
     ///
     /// ```
@@ -367,7 +369,7 @@ impl Paths {
     /// let room = BoxRoom::new(Scene::default())?;
     /// let twice = Paths::new(room, Bounces::Exactly(2), Hemisphere::Cosine, FindLight::BySampling)?;
     /// let path = twice.trace(&mut Stream::new(1, 0));
-    /// // p and p_j; from p_j a point of the light is looked for
+    /// // p and p_j; the light is sampled at p_j
     /// assert_eq!((path.vertices[0], path.vertices.len(), path.samples[0].from), (room.point(), 2, 1));
     /// assert_eq!(path.light, twice.draw(&mut Stream::new(1, 0)));
     /// # Ok::<(), unbiased::Error>(())
@@ -383,7 +385,7 @@ impl Paths {
         path
     }
 
-    /// Follows one path from `start`, and adds up the light that it finds.
+    /// Follows one path from `start`, and returns the radiance that it finds.
     #[inline]
     fn walk(&self, start: &Vertex, rng: &mut Stream, mut see: impl FnMut(Event<'_>)) -> f64 {
         let [fewest, most] = self.counted;
@@ -427,8 +429,8 @@ impl Paths {
         light
     }
 
-    /// With what probability a path of this throughput goes on: rounded up to the grid of the uniform
-    /// numbers, on which it is kept exactly.
+    /// The probability that a path of this throughput goes on, rounded up to the grid of the uniform numbers
+    /// so that it is exact.
     #[inline(always)]
     fn goes_on<T: Real>(&self, throughput: T) -> T {
         match self.ending {
@@ -438,7 +440,7 @@ impl Paths {
         }
     }
 
-    /// The numbers that every path takes, whether it needs them or not, where roulette does not end it.
+    /// How many random numbers every path takes, needed or not, if roulette does not end it; else 0.
     fn numbers_of_each(&self) -> u64 {
         let [fewest, most] = self.counted;
         if self.ending != Ending::Never || most == 0 {
@@ -449,14 +451,13 @@ impl Paths {
         2 * u64::from(last + if self.samples_light() { samples } else { 0 })
     }
 
-    /// The most rays of a path: once the light was sampled for the last time, only what the faces emit is
-    /// left to be found.
+    /// The largest number of rays of a path. After the last light sample, a ray is needed only if faces emit.
     fn last(&self) -> u32 {
         let most = self.counted[1];
         if self.samples_light() && self.room.scene().emission == 0.0 { most.saturating_sub(1) } else { most }
     }
 
-    /// cos θ/(π p(ω)), what is left of f_r cos θ/p(ω) beside the albedo: 1 for cosine directions, 2 cos θ for
+    /// cos θ/(π p(ω)), which is f_r cos θ/p(ω) without the albedo: 1 for cosine directions, 2 cos θ for
     /// uniform ones.
     #[inline]
     fn cosine_over_pdf(&self, direction: &Direction) -> f64 {
@@ -470,34 +471,35 @@ impl Paths {
 impl Estimator for Paths {
     #[inline]
     fn draw(&self, rng: &mut Stream) -> f64 {
-        // paths side by side all take as many numbers
+        // paths that are computed side by side all take the same number of random numbers
         let end = rng.random_numbers() + self.numbers;
         let light = self.light_from(&self.room.point(), rng);
         rng.skip_to(end);
         light
     }
 
-    /// Paths side by side: the same as one after the other but for rounding, 1e-12 of each.
+    /// Many paths side by side. Draws equal those of one path after the other to about 1e-12.
     fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
         side_by_side::fill::<f64>(self, rng, draws);
     }
 
-    /// Why error bars are not to be trusted, if they are not: the variance may be infinite, or so few paths
-    /// hold most of it that a run of a million does not meet them.
+    /// Why the error bar may be wrong: the variance may be infinite, or such a small fraction of paths holds
+    /// most of it that a run of a million draws may miss them.
     ///
-    /// A path's squared throughput grows by E\[(ρ cos θ/(π p(ω)))²\]/q a bounce, times the q of going on:
-    /// ρ²/q with cosine directions, (4/3)ρ²/q with uniform ones. It must stay below 1 for the largest albedo
-    /// ρ to be safe. And light samples near the light's edge have an infinite variance where the light
-    /// touches a wall.
+    /// A path's squared throughput grows by E\[(ρ cos θ/(π p(ω)))²\]/q per bounce: ρ²/q with cosine
+    /// directions, (4/3)ρ²/q with uniform ones. For a finite variance this must stay below 1 for the largest
+    /// albedo ρ. Light samples have an infinite variance if the light touches a wall.
     ///
-    /// An error bar from n draws has itself a relative error of about √(κ/4n), with κ = E X⁴/(E X²)². A
-    /// throughput made of k uniform directions has κ = ((16/5)/(4/3)²)ᵏ = (9/5)ᵏ, whatever the albedo, and
-    /// light that one path in m finds by chance m times that. From κ = 10⁶ on it is told; in so many draws or
-    /// fewer, error bars are mostly too short. For a sum up to K bounces κ is at most (Σ (16/5)^(k/4) ρᵏ)⁴/(E
-    /// X²)², and by chance m is estimated from the light's part of all faces. Samples of a light at the
-    /// distance a from the walls, taken from there, have κ of about 8/a³: with c, d and y the way down,
-    /// across and along, E Xⁿ is in proportion to ∫ (cd)ⁿ/(c² + d² + y²)²ⁿ over d > a, 0.131/a for n = 2 and
-    /// 0.00112/a⁵ for n = 4.
+    /// An error bar from n draws has a relative error of about √(κ/4n), with κ = E X⁴/(E X²)². With κ ≥ 10⁶
+    /// there is a doubt, as error bars from that many draws or fewer are mostly too short. κ is estimated as
+    /// follows:
+    /// - A throughput of k uniform directions has κ = ((16/5)/(4/3)²)ᵏ = (9/5)ᵏ, whatever the albedo.
+    /// - If one path in m finds the light by chance, κ is m times that. m is estimated from the light's share
+    ///   of the area of all faces.
+    /// - For a sum of up to K bounces κ is at most (Σ (16/5)^(k/4) ρᵏ)⁴/(E X²)².
+    /// - Light samples from a wall at distance a from the light have κ of about 8/a³. With c, d and y the
+    ///   distances down, across and along, E Xⁿ is proportional to ∫ (cd)ⁿ/(c² + d² + y²)²ⁿ over d > a, which
+    ///   is 0.131/a for n = 2 and 0.00112/a⁵ for n = 4.
     ///
     /// ```
     /// # use unbiased::paths::room::{BoxRoom, Scene};
@@ -537,10 +539,10 @@ impl Estimator for PathsF32 {
 
 const Q: &str = "the continuation probability q";
 
-/// Draws that a run has, or that one has time for.
+/// The number of draws of a typical run.
 const A_MILLION: f64 = 1e6;
 
-/// L_e A/π, what a sample of the light weighs but for cos θ cos θ′/r² and the albedo.
+/// L_e A/π, the weight of a light sample without cos θ cos θ′/r² and the albedo.
 fn power(room: &BoxRoom) -> f64 {
     room.scene().radiance * room.light_area() * std::f64::consts::FRAC_1_PI
 }
@@ -549,7 +551,7 @@ fn most_albedo(room: &BoxRoom) -> f64 {
     room.scene().wall_albedo.max(room.scene().cube_albedo)
 }
 
-/// The probability min(1, w) of going on.
+/// The probability min(1, w) that a path of throughput w goes on.
 #[inline(always)]
 fn by_throughput<T: Real>(throughput: T) -> T {
     on_the_grid(throughput.least(T::of(1.0)))
@@ -561,20 +563,20 @@ fn on_the_grid<T: Real>(p: T) -> T {
     (p / T::STEP).ceil() * T::STEP
 }
 
-/// What a path meets on its way.
+/// What happens along a path.
 enum Event<'a> {
     Vertex(&'a Vertex),
     Light { point: DVec3, visible: bool },
 }
 
-/// A path that was followed.
+/// A traced path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Path {
-    /// Its vertices, from p on; the last one may be on the light.
+    /// Its vertices, starting with p; the last one may be on the light.
     pub vertices: Vec<Vertex>,
-    /// The points of the light that were drawn on the way.
+    /// The light samples drawn along it.
     pub samples: Vec<Sample>,
-    /// The light that it found, weighted: the draw.
+    /// The radiance that it finds: the draw.
     pub light: f64,
 }
 
@@ -589,11 +591,11 @@ pub struct Sample {
     pub visible: bool,
 }
 
-/// The estimator of 4.3, f_r L̂_o(p_j) cos θ/p(ω): light that comes to p from the points p_j it sees, in
-/// directions drawn from `directions`.
+/// The estimator of 4.3, f_r L̂_o(p_j) cos θ/p(ω): radiance that reaches p from the points p_j, in directions
+/// drawn from `directions`.
 ///
 /// `outgoing` is L_o(p_j, −ω), or any unbiased estimate of it that takes its random numbers from the stream.
-/// With [`BoxRoom::direct`] it is the part of two bounces, without any variance from p_j on.
+/// With [`BoxRoom::direct`] it is the two-bounce radiance, without variance from p_j on.
 ///
 /// ```
 /// use unbiased::paths::room::{BoxRoom, Scene};

@@ -74,11 +74,11 @@ pub(crate) const QUESTIONS: &[Question] = &[
         formula: "light → p_j → p → eye: two bounces, at p_j and at p, for every ω_i above the surface",
         latex: &[r"\text{light} \to \mathbf p_j \to \mathbf p \xrightarrow{\;\omega_o\;} \text{eye},
               \qquad \omega_{i,j} = \frac{\mathbf p_j - \mathbf p}{\lVert \mathbf p_j - \mathbf p\rVert}"],
-        answer: "From p the direction ω_i is drawn at random, uniformly or in proportion to cos θ, and a ray \
-                 is followed to p_j; there the light is looked for. ω_i points away from p, towards where \
-                 the light comes from. From the cube's top only the walls above it and the ceiling are seen; \
-                 the ceiling lies in the light's plane and gets none of it, so two-bounce light comes by way \
-                 of the walls.",
+        answer: "From p the direction ω_i is drawn at random, uniformly or in proportion to cos θ, and a \
+                 ray is followed to p_j; from there the light is sampled. ω_i points away from p, towards \
+                 where the light comes from. From the cube's top only the walls above it and the ceiling \
+                 are visible; the ceiling lies in the light's plane and receives no light, so two-bounce \
+                 light comes by way of the walls.",
         numbers: &[],
         wrong: &[
             Wrong {
@@ -115,10 +115,9 @@ pub(crate) const QUESTIONS: &[Question] = &[
         latex: &[r"\text{light} \to \mathbf p_j' \to \mathbf p_j \to \mathbf p \xrightarrow{\;\omega_o\;}
               \text{eye}"],
         answer: "Every vertex draws its next direction around its own normal. A path of three bounces sees \
-                 more of the room than one of two: floor, ceiling and the cube's sides are reached now. Each \
-                 bounce \
-                 multiplies the light by the albedo of the face, «ρ_wall» on a wall, so what comes after \
-                 more bounces is less, but never nothing.",
+                 more of the room than one of two: floor, ceiling and the cube's sides are reached now. \
+                 Each bounce multiplies the radiance by the albedo of the face, «ρ_wall» on a wall, so more \
+                 bounces contribute less, but never 0.",
         numbers: &[],
         wrong: &[
             Wrong { answer: "p_j′ on the same wall as p_j", slip: "a flat face does not see itself" },
@@ -144,8 +143,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
                     from p(ω), and to the light. Express the Monte Carlo estimator of the outgoing radiance \
                     at p \
                     in terms of the radiance L_o that leaves p_j.",
-        hint: "It is the estimator of 3.4. What is the light that arrives at p from ω_ij, seen from where it \
-               left?",
+        hint: "It is the estimator of 3.4. From which point does the radiance come that arrives at p from \
+               ω_ij, and in which direction does it leave that point?",
         formula: "L̂_o(p, ω_o) = 1/n Σ (ρ/π) L_o(p_j, −ω_ij) cos θ_ij / p(ω_ij), n counting all directions",
         latex: &[r"\hat L_o(\mathbf p, \omega_o)
               = \frac1n \sum_{j=1}^n \frac{f_r\, L_o(\mathbf p_j, -\omega_{i,j})
@@ -153,14 +152,13 @@ pub(crate) const QUESTIONS: &[Question] = &[
               = \frac1n \sum_{j=1}^n \frac{\frac{\rho}{\pi}\, L_o(\mathbf p_j, -\omega_{i,j})
               \cos\theta_{i,j}}{p(\omega_{i,j})}"],
         answer: "Radiance does not change along a ray: what arrives at p from ω_ij is what left p_j towards \
-                 p, L_i(p, ω_ij) = L_o(p_j, −ω_ij). If L_o(p_j) is the light that p_j reflects once, this is \
-                 the part of two bounces; \
-                 an unbiased estimate of it in its place, with random numbers of its own, leaves the mean as \
-                 it is, because the mean of a product of independent factors is the product of their means. \
-                 So p_j may again ask a p_j′, and \
-                 so on: that is path tracing, and Russian roulette (5) ends it. In this room the light after \
-                 one bounce, 8F with F the form factor of two parallel squares, and after two, an integral \
-                 over the walls, are known exactly.",
+                 p, L_i(p, ω_ij) = L_o(p_j, −ω_ij). If L_o(p_j) is the radiance that p_j reflects directly \
+                 from the light, this is the two-bounce part; an unbiased estimate of it in its place, with \
+                 random numbers of its own, does not change the mean, because the mean of a product of \
+                 independent factors is the product of their means. So the radiance at p_j may be estimated \
+                 by way of a further point p_j′, and so on: that is path tracing, and Russian roulette (5) \
+                 ends it. In this room the radiance after one bounce, 8F with F the form factor of two \
+                 parallel squares, and after two, an integral over the walls, are known exactly.",
         numbers: &[],
         wrong: &[
             Wrong {
@@ -170,8 +168,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
             },
             Wrong {
                 answer: "cos θ_ij forgotten",
-                slip: "the tilt of p's face; with cosine-distributed directions it cancels against p(ω), but \
-                       not before",
+                slip: "it accounts for the tilt of p's face, and cancels against p(ω) only for \
+                       cosine-distributed directions",
             },
             Wrong {
                 answer: "L_o(p_j, ω_ij)",
@@ -179,11 +177,11 @@ pub(crate) const QUESTIONS: &[Question] = &[
             },
             Wrong {
                 answer: "all light at p",
-                slip: "this is the part of two bounces; the light that comes at once is another",
+                slip: "this is the two-bounce part only; light that arrives directly is another part",
             },
         ],
         on_the_original: Some(
-            "The original's sum is an estimate, so it wants a hat; p is evaluated at each ω_ij; and n must \
+            "The original's sum is an estimate, so L_o needs a hat; p is evaluated at each ω_ij; and n must \
              count all directions, not those of non-occluded paths alone. It is the two-bounce part of the \
              radiance, not all of it.",
         ),

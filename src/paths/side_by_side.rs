@@ -1,10 +1,9 @@
-//! Many paths side by side, each in a lane of a vector: the loop of [`Paths::walk`] with selections in place
-//! of branches, from the same numbers.
+//! Many paths side by side, one per lane of a vector: the loop of [`Paths::walk`] with selections in place of
+//! branches, and the same random numbers.
 //!
-//! Faces are not told apart one by one. A ray ends on a plane across one axis, where the normal is three
-//! numbers, one of them ±1 against the ray and the others 0, and the coordinate on that axis is set exactly,
-//! as in the plain loop. A path that has ended goes on with throughput 0: where roulette ends it, until the
-//! next one takes its lane.
+//! Faces have no index here. A ray ends on a plane across one axis: one component of the normal is ±1,
+//! against the ray, and the others are 0. The coordinate on that axis is set exactly, as in the plain loop. A
+//! path that has ended goes on with throughput 0; with roulette, until the next path takes its lane.
 
 use pulp::NullaryFnOnce;
 
@@ -14,15 +13,15 @@ use crate::lambertian::hemisphere::Hemisphere;
 use crate::paths::room::{BoxRoom, Face};
 use crate::stream::{Abreast, LANES, Stream};
 
-/// A number for each path of a row.
+/// One number for each path of a row.
 type Each<T> = [T; LANES];
 
-/// Rows of paths under way together, at most, and rows of random numbers that wait for them: they stay in the
+/// The largest number of rows of paths that run together, so that they and their random numbers stay in the
 /// cache.
 const ROWS: usize = 8;
 const NUMBERS: usize = 256;
 
-/// Fills `draws` with the light of a path each, computed in `T`.
+/// Fills `draws` with the radiance of one path each, computed in `T`.
 pub(super) fn fill<T: Real>(paths: &Paths, rng: &mut Stream, draws: &mut [f64]) {
     let walk = Walk::<T>::new(paths);
     if paths.ending != Ending::Never {
@@ -44,7 +43,7 @@ pub(super) fn fill<T: Real>(paths: &Paths, rng: &mut Stream, draws: &mut [f64]) 
     }
 }
 
-/// The light of one path, computed in `T`.
+/// The radiance of one path, computed in `T`.
 pub(super) fn draw<T: Real>(paths: &Paths, rng: &mut Stream) -> f64 {
     let (walk, mut light) = (Walk::<T>::new(paths), [0.0]);
     if paths.ending != Ending::Never {
@@ -57,7 +56,7 @@ pub(super) fn draw<T: Real>(paths: &Paths, rng: &mut Stream) -> f64 {
     light[0]
 }
 
-/// Where the paths of a row are, their throughput there, and the light that each has found.
+/// The positions of a row's paths, their throughput, and the radiance that each has found so far.
 #[derive(Clone, Copy)]
 struct Front<T> {
     x: Each<T>,
@@ -72,7 +71,7 @@ struct Front<T> {
 }
 
 impl<T: Real> Front<T> {
-    /// Lets the path of a lane begin as that of another front.
+    /// Starts a new path in a lane, copied from `start`.
     fn begin(&mut self, lane: usize, start: &Self) {
         self.x[lane] = start.x[lane];
         self.y[lane] = start.y[lane];
@@ -86,15 +85,15 @@ impl<T: Real> Front<T> {
     }
 }
 
-/// How paths go.
+/// The paths' settings, converted to `T`.
 struct Walk<'a, T> {
     paths: &'a Paths,
     room: Room<T>,
-    /// A row of paths that begin.
+    /// A row of paths at their start.
     start: Front<T>,
     /// Whether the light is found by sampling it.
     sampled: bool,
-    /// What all light is divided by on the way: [`Paths::scale`].
+    /// All radiances are divided by this: [`Paths::scale`].
     scale: f64,
 }
 
@@ -120,12 +119,12 @@ impl<'a, T: Real> Walk<'a, T> {
         Self { paths, room: Room::new(&paths.room, scale), start, sampled, scale }
     }
 
-    /// Paths that all have the same number of bounces, and as many numbers each; the first is in `lane` of
-    /// its row. `numbers` are of as many rows as `sets` says. Returns the rays.
+    /// Runs paths that all have the same number of bounces and of random numbers; the first is in `lane` of
+    /// its row. `numbers` has rows for `sets` rows of paths. Returns the number of rays.
     fn together(&self, numbers: &[Each<T>], sets: usize, lane: usize, draws: &mut [f64]) -> u64 {
         let mut fronts = [self.start; ROWS];
         let fronts = &mut fronts[..(lane + draws.len()).div_ceil(LANES)];
-        // lanes before the first path and beyond the last
+        // unused lanes before the first path and after the last
         let end = (lane + draws.len() - 1) % LANES + 1;
         if let Some(front) = fronts.first_mut() {
             front.throughput[..lane].fill(T::of(0.0));
@@ -158,8 +157,8 @@ impl<'a, T: Real> Walk<'a, T> {
         rays
     }
 
-    /// Paths that roulette ends: where one has ended the next of its lane begins. Each takes as many numbers
-    /// at every vertex.
+    /// Runs paths that roulette ends: when one has ended, the next one starts in its lane. Every vertex takes
+    /// the same number of random numbers.
     fn one_after_another(&self, abreast: &mut Abreast<'_>, draws: &mut [f64]) {
         let mut fronts = [self.start];
         for lane in 0..LANES {
@@ -200,13 +199,13 @@ impl<'a, T: Real> Walk<'a, T> {
         abreast.count_evaluations(rays);
     }
 
-    /// Adds a sample of the light at every path's vertex. Returns the rays.
+    /// Adds a light sample at every path's vertex. Returns the number of rays.
     fn sample(&self, fronts: &mut [Front<T>], numbers: Numbers<'_, T>) -> u64 {
         widest(Sample { room: self.room, fronts, numbers, lanes: LANES })
     }
 
-    /// Follows every path that goes on to its next vertex, whose own light counts if `counted`. Returns the
-    /// rays.
+    /// Moves every path that goes on to its next vertex; what that vertex emits is added if `counted`.
+    /// Returns the number of rays.
     fn go(&self, fronts: &mut [Front<T>], numbers: Numbers<'_, T>, reflect: bool, counted: bool) -> u64 {
         let Self { room, paths, .. } = *self;
         let of_faces = if counted { room.emission } else { T::of(0.0) };
@@ -230,7 +229,7 @@ impl<'a, T: Real> Numbers<'a, T> {
     }
 }
 
-/// The scene's numbers.
+/// The scene's numbers in `T`.
 #[derive(Clone, Copy)]
 struct Room<T> {
     wall_albedo: T,
@@ -245,7 +244,7 @@ struct Room<T> {
 impl<T: Real> Room<T> {
     fn new(room: &BoxRoom, scale: f64) -> Self {
         let scene = room.scene();
-        // without a light none is met: no coordinate is below −1
+        // without a light no ray may hit it: no |coordinate| is below −1
         let half_width = if scene.light_half_width > 0.0 { scene.light_half_width } else { -1.0 };
         Self {
             wall_albedo: T::of(scene.wall_albedo),
@@ -257,8 +256,8 @@ impl<T: Real> Room<T> {
         }
     }
 
-    /// The part of `point`'s radiance that a point of the light, at the fractions (u, v) of it, sends by way
-    /// of this vertex, and whether a ray was needed to see it.
+    /// The part of `point`'s radiance that comes from a point of the light, at the fractions (u, v) of its
+    /// sides; and whether a ray was needed to test its visibility.
     #[inline(always)]
     fn lit(&self, at: [T; 3], normal: [T; 3], [u, v]: [T; 2]) -> (T, bool) {
         let (zero, one, two) = (T::of(0.0), T::of(1.0), T::of(2.0));
@@ -278,14 +277,14 @@ impl<T: Real> Room<T> {
     }
 }
 
-/// The sum of what was counted in each lane.
+/// The sum of the counts of all lanes.
 #[inline(always)]
 fn total<T: Real>(counts: Each<T>) -> u64 {
     counts.iter().map(|count| count.to_f64()).sum::<f64>() as u64
 }
 
-/// A direction without a component that is 0, or nearly, which moves nothing but would have no inverse; and
-/// the inverses of its components, by one division.
+/// The direction with components near 0 replaced by a tiny one, which moves nothing but has an inverse; and
+/// the inverses of all components, with one division.
 #[inline(always)]
 fn inverted<T: Real>(direction: [T; 3]) -> ([T; 3], [T; 3]) {
     let [x, y, z] = direction.map(|d| if d.abs() < T::FLAT { T::FLAT } else { d });
@@ -294,8 +293,8 @@ fn inverted<T: Real>(direction: [T; 3]) -> ([T; 3], [T; 3]) {
     ([x, y, z], [y * z * all, x * z * all, xy * all])
 }
 
-/// Where a line enters the cube and where it leaves it, and the axis across which it enters; it meets the
-/// cube where it enters before it leaves. Nothing passes under it.
+/// The distances at which a line enters and leaves the cube, and the axis of the face that it enters by. The
+/// line hits the cube if it enters before it leaves. Nothing passes under the cube.
 #[inline(always)]
 fn cube<T: Real>(at: [T; 3], inverse: [T; 3]) -> (T, T, [bool; 3]) {
     let slab = |at: T, inverse: T| {
@@ -315,18 +314,17 @@ fn cube<T: Real>(at: [T; 3], inverse: [T; 3]) -> (T, T, [bool; 3]) {
     (sides.most(z_in), x_out.least(y_out).least(z_out), [!top & !across_y, !top & across_y, top])
 }
 
-/// Light that is sampled.
+/// Next-event estimation for all paths.
 struct Sample<'a, T> {
     room: Room<T>,
     fronts: &'a mut [Front<T>],
     numbers: Numbers<'a, T>,
-    /// [`LANES`], which the compiler must not know, or it would unroll a loop before it looks whether it goes
-    /// wide.
+    /// [`LANES`], hidden from the compiler: otherwise it unrolls the loop before it vectorizes it.
     lanes: usize,
 }
 
 impl<T: Real> NullaryFnOnce for Sample<'_, T> {
-    /// Rays to the light.
+    /// Number of rays to the light.
     type Output = u64;
 
     #[inline(always)]
@@ -339,7 +337,7 @@ impl<T: Real> NullaryFnOnce for Sample<'_, T> {
     }
 }
 
-/// A sample of the light for each path of a row.
+/// A light sample for each path of a row.
 #[inline(always)]
 fn sample<T: Real>(
     room: Room<T>,
@@ -360,7 +358,7 @@ fn sample<T: Real>(
     }
 }
 
-/// Roulette: throughputs times f_r cos θ/p(ω), and which paths go on.
+/// Roulette: multiplies throughputs by f_r cos θ/p(ω), and decides which paths go on.
 struct End<'a, T> {
     paths: &'a Paths,
     front: &'a mut Front<T>,
@@ -407,7 +405,7 @@ impl<T: Real> End<'_, T> {
     }
 }
 
-/// Rays to the next vertices, and what those emit.
+/// Traces rays to the next vertices, and adds what those emit.
 struct Go<'a, T> {
     room: Room<T>,
     fronts: &'a mut [Front<T>],
@@ -421,7 +419,7 @@ struct Go<'a, T> {
 }
 
 impl<T: Real> NullaryFnOnce for Go<'_, T> {
-    /// Paths that are under way.
+    /// Number of paths that go on.
     type Output = u64;
 
     #[inline(always)]
@@ -435,7 +433,7 @@ impl<T: Real> NullaryFnOnce for Go<'_, T> {
 }
 
 impl<T: Real> Go<'_, T> {
-    /// Along directions whose sin θ, cos θ and cos θ/(π p) come from a uniform number.
+    /// Directions whose sin θ, cos θ and cos θ/(π p) are computed from a uniform number.
     #[inline(always)]
     fn along(self, of_theta: impl Fn(T) -> [T; 3]) -> u64 {
         let mut alive = [T::of(0.0); LANES];
@@ -448,7 +446,7 @@ impl<T: Real> Go<'_, T> {
     }
 }
 
-/// A step of the paths of a row.
+/// One step of a row of paths.
 struct Step<T> {
     room: Room<T>,
     emitted: [T; 2],
@@ -457,7 +455,7 @@ struct Step<T> {
 }
 
 impl<T: Real> Step<T> {
-    /// To the next vertices.
+    /// Moves all paths to their next vertices.
     #[inline(always)]
     fn go(
         &self,
@@ -471,7 +469,7 @@ impl<T: Real> Step<T> {
         let (zero, one) = (T::of(0.0), T::of(1.0));
         let [wall, cube_wall] = [T::of(Face::ROOM_HALF_WIDTH), T::of(Face::CUBE_HALF_WIDTH)];
         let [height, cube_height] = [T::of(Face::ROOM_HEIGHT), T::of(Face::CUBE_HEIGHT)];
-        // two loops rather than one: a processor then works on several steps of each at a time
+        // two loops rather than one: the processor then overlaps several steps of each
         let (mut way_x, mut way_y, mut way_z) = ([zero; LANES], [zero; LANES], [zero; LANES]);
         for lane in 0..lanes.min(LANES) {
             let normal = [normal_x[lane], normal_y[lane], normal_z[lane]];
@@ -492,7 +490,7 @@ impl<T: Real> Step<T> {
         for lane in 0..lanes.min(LANES) {
             let at = [x[lane], y[lane], z[lane]];
             let ([dx, dy, dz], inverse) = inverted([way_x[lane], way_y[lane], way_z[lane]]);
-            // how far the room's planes are
+            // distances to the room's planes
             let [ahead_x, ahead_y, ahead_z] = [dx, dy, dz].map(|d| d > zero);
             let to_x = ((if ahead_x { wall } else { -wall }) - at[0]) * inverse[0];
             let to_y = ((if ahead_y { wall } else { -wall }) - at[1]) * inverse[1];
@@ -584,10 +582,10 @@ mod tests {
         [Stream::new(seed, 0), sobol, jittered]
     }
 
-    /// Path by path the light of the plain loop from the same numbers, and as many numbers and rays. Rounding
-    /// moves a hit by 1e-16, and every further bounce that grazes a face makes more of it. A ray within 1e-14
-    /// of an edge may end on the other side of it, which by the lengths of the edges happens to fewer than
-    /// one path in 1e12 here.
+    /// Each path finds the radiance of the plain loop with the same numbers, and takes the same number of
+    /// random numbers and rays. Rounding moves a hit by 1e-16, and each further grazing bounce enlarges that.
+    /// A ray within 1e-14 of an edge may end on the other side of it; from the lengths of the edges, that
+    /// happens to fewer than one path in 1e12 here.
     #[test]
     fn every_path_is_one_of_the_plain_loop() {
         let (mut lit, mut seed) = (0, 0);
@@ -595,7 +593,7 @@ mod tests {
             seed += 1;
             for mut rng in streams(seed) {
                 let (mut one, mut filled) = (rng.clone(), [0.0; 110]);
-                // also where a set of lanes is not begun, or not ended
+                // parts of 75 also test rows that start or end in the middle
                 for part in filled.chunks_mut(75) {
                     paths.fill(&mut rng, part);
                 }
@@ -612,8 +610,8 @@ mod tests {
         assert!(lit > 10_000, "{lit} paths found light");
     }
 
-    /// In single precision the same paths, one at a time or many: of up to three bounces all but those that
-    /// pass an edge by 1e-6, to some roundings of 6e-8 each.
+    /// In single precision the paths are the same, one at a time or many. Up to three bounces all agree to a
+    /// few roundings of 6e-8, except those that pass an edge within 1e-6.
     #[test]
     fn single_precision_follows_the_same_paths() {
         let (mut far, mut all, mut seed) = (0, 0, 0);
@@ -640,8 +638,7 @@ mod tests {
         assert!(all > 10_000 && far < all / 1000, "{far} of {all}");
     }
 
-    /// The same bits with vectors of any width, and without: what this processor gives is what every other
-    /// gives.
+    /// Vectors of any width, or none, give the same bits, so every processor gives the same results.
     #[test]
     fn wide_and_narrow_loops_have_the_same_bits() {
         let mut seed = 0;
@@ -662,8 +659,8 @@ mod tests {
         });
     }
 
-    /// Every draw is filled, whatever their number, and with a path of its own: as many different ones as
-    /// there should be.
+    /// Every draw is filled, for any number of draws, and with a path of its own: there are as many different
+    /// ones as expected.
     #[test]
     fn any_number_of_draws_is_filled() {
         let room = BoxRoom::new(Scene { emission: 0.3, ..Scene::default() }).unwrap();

@@ -9,34 +9,34 @@ use crate::plot::Labels;
 use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Width};
 use crate::stream::Stream;
 
-/// What is shown, in metres.
+/// The visible part of the room, in metres.
 const LOW: [f64; 2] = [-2.25, -0.2];
 const HIGH: [f64; 2] = [2.25, 4.3];
-/// Points of print to a metre: 150 mm but for 2 points on both sides.
+/// Points of print per metre: the figure is 150 mm wide, with a margin of 2 points on both sides.
 const SCALE: f64 = (150.0 * 72.0 / 25.4 - 4.0) / (HIGH[0] - LOW[0]);
-/// The height at which a metre is as high as it is wide, with 22 points above and below.
+/// The height at which both axes have this scale, with 22 points above and below.
 const HEIGHT_MM: f64 = (SCALE * (HIGH[1] - LOW[1]) + 22.0) * 25.4 / 72.0;
 
-/// One ink a path.
+/// One ink per path.
 const INKS: [(Ink, &str, &str); 3] =
     [(Ink::Blue, "①", "₁"), (Ink::Vermilion, "②", "₂"), (Ink::Green, "③", "₃")];
 const PRIMES: [&str; 2] = ["", "′"];
 
-/// Paths that are looked at, at most, for some that can be drawn.
+/// The largest number of paths that are traced to find some that can be drawn.
 const TRIED: u64 = 100_000;
-/// Paths that can be made out, at most, from which those are chosen that can be told apart.
+/// The largest number of legible paths among which a set is chosen that can be told apart.
 const CANDIDATES: usize = 300;
 
-/// 4.1 and 4.2: up to three paths of two or of three bounces, as they were sampled, from the side: the
-/// student's edition, which has room, cube, light, eye and p only, and the solution.
+/// Figures for 4.1 and 4.2: up to three sampled paths of two or three bounces, from the side. The first
+/// figure is the student's edition, which has only room, cube, light, eye and p; the second is the solution.
 ///
-/// Of the paths that reach the light after just as many bounces as `paths` counts at most, the first ones are
-/// taken that can be told apart in a drawing: their vertices are apart and lie on faces that are seen edge
-/// on, they pass neither before nor behind the cube, and there is room for their labels. If none of the first
-/// 100,000 is such a path the title says "No", and the description why. Where light is found by chance few
-/// paths reach it, and mostly fewer than `count` are drawn.
+/// Drawn are the first paths that reach the light after the largest number of bounces that `paths` counts,
+/// and that can be told apart in a drawing: their vertices are apart and lie on faces seen edge on, they pass
+/// neither before nor behind the cube, and there is room for their labels. If none of the first 100,000 will
+/// do, the title begins with "No", and the description says why. If the light is found by chance few paths
+/// reach it, and fewer than `count` are usually drawn.
 ///
-/// The room is seen from the south, or from the east where p would be before the cube or behind it.
+/// The room is seen from the south, or from the east if p would be before or behind the cube.
 ///
 /// ```
 /// use unbiased::paths::room::{BoxRoom, Scene};
@@ -54,7 +54,7 @@ const CANDIDATES: usize = 300;
 /// ```
 ///
 /// # Errors
-/// If `paths` counts anything but two or three bounces at most, or they cannot be drawn.
+/// If `paths` counts up to any other number of bounces than two or three, or the figures cannot be drawn.
 pub fn paths_drawn(paths: &Paths, count: usize, seed: u64) -> Result<[Figure; 2]> {
     let bounces = paths.most_bounces();
     let ok = (2..=3).contains(&bounces);
@@ -83,7 +83,7 @@ fn segments(line: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> {
     line.iter().copied().zip(line.iter().copied().skip(1)).map(|(a, b)| [a, b])
 }
 
-/// Whether a segment stays off the cube in the drawing.
+/// Whether a segment does not touch the cube in the drawing.
 fn passes_the_cube([a, b]: [[f64; 2]; 2]) -> bool {
     let mut points =
         (0..=200).map(|i| f64::from(i) / 200.0).map(|t| [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]);
@@ -109,7 +109,7 @@ struct Drawn {
     line: Vec<[f64; 2]>,
 }
 
-/// The room from the side: from the south, along y, or from the east, along x.
+/// The view of the room: from the south, along y, or from the east, along x.
 struct SideView {
     room: BoxRoom,
     from_east: bool,
@@ -126,7 +126,7 @@ impl SideView {
         [if self.from_east { at.y } else { at.x }, at.z]
     }
 
-    /// The part of a direction that points away from who looks.
+    /// The component of a direction away from the viewer.
     fn depth(&self, way: DVec3) -> f64 {
         if self.from_east { way.x } else { way.y }
     }
@@ -135,7 +135,7 @@ impl SideView {
         self.seen(self.room.point().position())
     }
 
-    /// Where the eye is drawn: before p's face, and aside, towards the middle of the room.
+    /// Where the eye is drawn: in front of p's face, and to the side, towards the middle of the room.
     fn eye(&self) -> [f64; 2] {
         let (p, [across, up]) = (self.p(), self.seen(self.room.point().normal()));
         let towards = |middle: f64, at: f64| if at > middle { -1.0 } else { 1.0 };
@@ -162,11 +162,11 @@ impl SideView {
             .filter(|path| self.reads_well(path) && self.told_apart(std::slice::from_ref(path)))
             .take(CANDIDATES)
             .collect();
-        // the room by itself may be too crowded already, where p lies in a corner; more than rounding must
-        // not be added
+        // where p lies in a corner, the room alone may be too crowded; paths must not add to that, up to
+        // rounding
         let crowded = self.picture(&[], Edition::Solution).1;
         let mut most = Vec::new();
-        // the first one may leave no room for others: begin with the next one then
+        // the first one may leave no room for others: then start with the next one
         for first in 0..candidates.len() {
             let mut chosen: Vec<Drawn> = Vec::new();
             for path in candidates.iter().skip(first) {
@@ -185,15 +185,15 @@ impl SideView {
         most
     }
 
-    /// Whether any light can leave p after two bounces or more: the cube does not see itself, so one of two
-    /// vertices is on a wall.
+    /// Whether any light can leave p after two bounces or more. The cube does not see itself, so one of two
+    /// consecutive vertices is on a wall.
     fn can_be_lit(&self) -> bool {
         let scene = self.room.scene();
         let reflects = scene.wall_albedo > 0.0 && self.room.albedo(&self.room.point()) > 0.0;
         reflects && scene.radiance > 0.0 && scene.light_half_width > 0.0
     }
 
-    /// The path, if it reaches the light after as many bounces as that.
+    /// The path, if it reaches the light after this number of bounces.
     fn whole(&self, path: Path, bounces: u32) -> Option<Drawn> {
         let Path { mut vertices, samples, light } = path;
         let bounces = bounces as usize;
@@ -213,18 +213,18 @@ impl SideView {
         Some(Drawn { vertices, line })
     }
 
-    /// Whether a path can be made out by itself.
+    /// Whether a path is legible on its own.
     fn reads_well(&self, path: &Drawn) -> bool {
         let later = || path.vertices.iter().skip(1);
         let edge_on = later().all(|vertex| self.depth(vertex.normal()) == 0.0);
-        // where two faces meet there is no telling on which a vertex lies, and light comes along the face
+        // near a corner it is not clear on which face a vertex lies, and light arrives along the face
         let off_corners = later().all(|vertex| {
             let [across, up] = self.seen(vertex.position());
             (across.abs() < 1.65 || (0.35..3.65).contains(&up)) && (up > 0.0 || across.abs() > 0.8)
         });
         let free = segments(&path.line)
             .all(|segment| passes_the_cube(segment) && distance_to(segment, self.eye()) > 0.3);
-        // nor does it go back the way it came
+        // and it must not go back the way it came
         let turns = segments(&path.line).zip(segments(&path.line).skip(1)).all(|([a, at], [_, b])| {
             let ([x, y], [u, v]) = ([a[0] - at[0], a[1] - at[1]], [b[0] - at[0], b[1] - at[1]]);
             x * u + y * v < 0.94 * x.hypot(y) * u.hypot(v)
@@ -232,7 +232,7 @@ impl SideView {
         edge_on && off_corners && free && turns
     }
 
-    /// Whether paths can be told from each other, the last from those before it.
+    /// Whether the last path can be told from those before it.
     fn told_apart(&self, paths: &[Drawn]) -> bool {
         let points = |path: &Drawn, least: usize| {
             path.line.get(least..path.line.len().saturating_sub(1)).unwrap_or_default().to_vec()
@@ -242,13 +242,13 @@ impl SideView {
         let apart = |points: &[[f64; 2]], least: f64| {
             points.iter().enumerate().all(|(i, a)| points.iter().take(i).all(|b| distance(*a, *b) > least))
         };
-        // arrows of two paths, and of p itself
+        // arrows of all paths, and p's own
         let mut tips = vec![self.to_eye(), self.tip_of_normal(&self.room.point())];
         tips.extend(paths.iter().filter_map(|path| match *path.line {
             [p, next, ..] => Some(direction(p, next, 0.8)),
             _ => None,
         }));
-        // an arrow is on no line but its own, lest it seem another's
+        // an arrow must not lie on another path's line
         let legs = || {
             let eye = [self.p(), self.eye()];
             paths.iter().flat_map(|path| segments(&path.line)).chain([eye])
@@ -275,7 +275,7 @@ impl SideView {
             && vertex_normals.chain([self.to_eye()]).all(|tip| off_lines(tip, 0.12))
     }
 
-    /// The drawing without its heading, and how much its labels are in the way.
+    /// The drawing without its heading, and how much its labels overlap other things.
     fn picture(&self, chosen: &[Drawn], edition: Edition) -> (Vec<Panel>, f64) {
         let metres = |name: &str, axis: usize| Axis::linear(name, LOW[axis], HIGH[axis]);
         let mut panel = Panel::new("", metres("across (m)", 0), metres("z (m)", 1));
@@ -418,7 +418,7 @@ impl SideView {
     }
 }
 
-/// An arrow, which labels stay off, its head included.
+/// An arrow, whose line and head labels must not cover.
 fn draw_arrow(ink: Ink, from: [f64; 2], to: [f64; 2], panel: &mut Panel, labels: &mut Labels) {
     panel.arrow(ink, from, to);
     let length = distance(from, to).max(1e-9);

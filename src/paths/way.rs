@@ -1,5 +1,5 @@
-//! How a path is followed, rightly or wrongly, in a room whose light is sampled on its area at every vertex,
-//! and whose other emission is found by chance.
+//! How a path is followed, with or without a mistake: with next-event estimation at every vertex, while what
+//! the faces emit is found by chance.
 
 use std::f64::consts::FRAC_1_PI;
 
@@ -10,7 +10,7 @@ use crate::lambertian::hemisphere::Hemisphere;
 use crate::paths::room::{BoxRoom, Face, Vertex, nearest, visible};
 use crate::stream::Stream;
 
-/// What a light sample is weighed by.
+/// The geometry of a light sample.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Seen {
     /// cos θ at the vertex.
@@ -33,45 +33,46 @@ pub(super) enum Spot {
     Reused,
 }
 
-/// What becomes of a light sample that the cube or the horizon hides.
+/// What happens to a light sample that is not visible.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Hidden {
     Dark,
-    /// The cube hides nothing.
+    /// It counts as visible.
     Lit,
-    /// Left out: another one is drawn for it.
+    /// It is replaced by another one.
     Redrawn,
 }
 
-/// How a path is followed and what is added up on it.
+/// How a path is followed, and what is summed along it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Way {
-    /// The first and the last bounce that count, from those asked for.
+    /// The smallest and the largest number of bounces that count, from those asked for.
     pub counted: fn([u32; 2]) -> [u32; 2],
-    /// What stands for cos θ cos θ′ A/r² of a light sample.
+    /// The factor cos θ cos θ′ A/r² of a light sample.
     pub sample: fn(Seen) -> f64,
     pub spot: Spot,
     pub hidden: Hidden,
     /// Whether the light is found by chance.
     pub chance: bool,
-    /// Whether every bounce but p's is a mirror's.
+    /// Whether all bounces but p's are mirror reflections.
     pub mirror: bool,
     pub directions: Hemisphere,
-    /// What stands for cos θ/(π p(ω)), from cos θ.
+    /// The factor cos θ/(π p(ω)), from cos θ.
     pub weight: fn(f64) -> f64,
     /// The throughput after a bounce, from the one before, the albedo there and p's.
     pub carried: fn(f64, f64, f64) -> f64,
     /// The albedo at a vertex where the light is sampled, from the right one and p's.
     pub last: fn(f64, f64) -> f64,
-    /// A path whose throughput falls below this ends.
+    /// A path ends when its throughput falls below this.
     pub cutoff: f64,
-    /// What the throughput is multiplied by where a coin says go on, as it does with chance [`GOES_ON`].
+    /// Roulette, if any: the path goes on with probability [`GOES_ON`], and its throughput is multiplied by
+    /// this.
     pub coin: Option<f64>,
 }
 
 pub(super) const GOES_ON: f64 = 0.8;
 
-/// No light is looked for longer than this.
+/// After this many samples the search for a visible one ends.
 pub(super) const TRIES: u32 = 4000;
 
 pub(super) const RIGHT: Way = Way {
@@ -89,7 +90,7 @@ pub(super) const RIGHT: Way = Way {
     coin: None,
 };
 
-/// The light found by chance alone.
+/// BSDF sampling alone.
 pub(super) const BY_CHANCE: Way = Way { sample: |_| 0.0, chance: true, ..RIGHT };
 
 impl Way {
@@ -135,7 +136,7 @@ impl Way {
         light
     }
 
-    /// L_e times what a sample of the light is taken for.
+    /// The estimate L_e times `sample` for one light sample.
     fn sampled(&self, room: &BoxRoom, vertex: &Vertex, [u, v]: [f64; 2], rng: &mut Stream) -> f64 {
         // a point of the ceiling never sees the light
         let tries = if self.hidden == Hidden::Redrawn && vertex.face() != Face::Ceiling { TRIES } else { 1 };

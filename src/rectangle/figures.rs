@@ -7,13 +7,13 @@ use crate::plot::{Axis, Figure, Ink, Marker, Panel, Plot, Side};
 use crate::rectangle::{Integrand, Rectangle};
 use crate::run::{Budget, estimate};
 
-/// Points of one measured curve: 4ᵏ evaluations, from 4 to 4⁷.
+/// The numbers of evaluations at which a curve is measured: 4ᵏ, from 4 to 4⁷.
 const EVALUATIONS: [u64; 7] = [4, 16, 64, 256, 1024, 4096, 16384];
 
-/// Where the names of the curves begin.
+/// The x at which the labels of the curves begin.
 const LAST_X: f64 = 30e3;
 
-/// Estimates that each measured error is the root mean square of: it is good to about 1/√(2 · 200) = 5 %.
+/// The number of estimates for each measured RMSE, which is then accurate to about 1/√(2 · 200) = 5 %.
 const REPEATS: u64 = 200;
 
 /// One curve: (evaluations, RMSE) measured, and the exact standard error where it is known.
@@ -26,7 +26,7 @@ struct Curve {
 }
 
 impl Curve {
-    /// The RMSE about `truth` of `of(n)` for each number of evaluations n.
+    /// Measures the RMSE of the estimator `of(n)` about `truth` for each number of evaluations n.
     fn measure<E: Estimator>(
         (label, ink, marker): (&str, Ink, Marker),
         truth: f64,
@@ -36,8 +36,8 @@ impl Curve {
         let mut measured = Vec::new();
         for n in EVALUATIONS {
             let repeats = estimate(&of(n)?, Budget::Draws(REPEATS), seed)?;
-            // √(1/R Σ (Fᵢ − F)²), by way of the std error √(1/(R (R − 1)) Σ (Fᵢ − F̄)²), whose squares do not
-            // overflow
+            // √(1/R Σ (Fᵢ − F)²), computed from the std error √(1/(R (R − 1)) Σ (Fᵢ − F̄)²), whose squares do
+            // not overflow
             let spread = repeats.std_error().unwrap_or(0.0) * (REPEATS as f64 - 1.0).sqrt();
             measured.push([n as f64, spread.hypot(repeats.mean() - truth)]);
         }
@@ -60,11 +60,11 @@ fn on_a_logarithmic_axis([_, y]: &[f64; 2]) -> bool {
     *y > 0.0 && y.is_finite()
 }
 
-/// 2.1: root-mean-square errors against evaluations: the test set by independent pairs, and the Gaussian by
-/// all four ways to place the points.
+/// Figure for 2.1: RMSE against the number of evaluations, for the test set with independent pairs, and for
+/// the Gaussian with each of the four point sets.
 ///
-/// Lines are exact where a closed form exists, else they join the measured points. Integrands without a known
-/// integral over this rectangle are left out.
+/// Lines are exact where a closed form exists, and join the measured points otherwise. Integrands whose
+/// integral over this rectangle is not known are left out.
 ///
 /// # Errors
 /// If an estimator cannot be run on this rectangle.
@@ -136,7 +136,7 @@ fn mean_of(rectangle: Rectangle, f: Integrand, n: u64) -> impl Estimator {
     from_fn(move |rng| (0..n).map(|_| one.draw(rng)).sum::<f64>() / n as f64)
 }
 
-/// Axes that hold all curves, with room for their names at the right ends.
+/// A panel that holds all curves, with room for their labels on the right.
 fn panel(heading: &str, curves: &[Curve]) -> Panel {
     let all = || curves.iter().flat_map(|curve| curve.measured.iter().chain(curve.exact.iter().flatten()));
     let low = all().fold(f64::INFINITY, |low, [_, y]| low.min(*y));
@@ -155,7 +155,7 @@ fn panel(heading: &str, curves: &[Curve]) -> Panel {
         panel.line(&format!("{name}, {series}"), curve.ink, drawn.clone());
         panel.marks(&format!("{name}, measured"), curve.ink, curve.marker, curve.measured.clone());
     }
-    // a name stands at its curve's end, or as near as the others leave room; its marker says whose it is
+    // a label stands at its curve's end, or as close as the other labels allow; its marker says whose it is
     let mut by_height: Vec<_> = curves.iter().collect();
     by_height.sort_by(|a, b| a.end().total_cmp(&b.end()));
     const LINE: f64 = 0.05;
@@ -176,10 +176,10 @@ fn panel(heading: &str, curves: &[Curve]) -> Panel {
     panel
 }
 
-/// Middles of things of these heights, sorted, as near as can be to where they want to be without
-/// overlapping: those that would are put about the mean of their wishes.
+/// Places labels, given as (wanted middle, height) and sorted, as close to the wanted middles as they fit
+/// without overlap. Labels that would overlap form a block centred on the mean of their wanted positions.
 fn apart(wanted: &[(f64, f64)]) -> Vec<f64> {
-    // blocks of neighbours that touch: how many, their height, and the sum of where their block would begin
+    // blocks of touching labels: their number, their height, and the sum of the block starts that they want
     let mut blocks: Vec<(usize, f64, f64)> = Vec::new();
     let begins = |&(count, _, sum): &(usize, f64, f64)| sum / count as f64;
     for &(middle, height) in wanted {
@@ -211,16 +211,16 @@ fn guide(panel: &mut Panel, curves: &[Curve]) {
     }
 }
 
-/// 2.1: the mean of e^(−x²−y²) so far, with its 95 % interval, for three seeds.
+/// Figure for 2.1: the running mean of A e^(−x²−y²) with its 95 % interval, for three seeds.
 ///
 /// # Errors
 /// If it cannot be drawn.
 pub fn running_means(rectangle: Rectangle, seed: u64) -> Result<Figure> {
     let bell = rectangle.independent(|x, y| Integrand::Gaussian.at(x, y));
     let truth = Integrand::Gaussian.integral(&rectangle).unwrap_or(f64::NAN);
-    // four tenths of the standard deviation: the interval's half width at about n = 25
+    // 0.4 standard deviations, the half width of the interval at about n = 25
     let spread = Integrand::Gaussian.variance(&rectangle).unwrap_or(1.0).sqrt();
-    // where f is all but constant, what can be told apart
+    // the smallest range, for f nearly constant
     let least = 1e-4 * truth.abs();
     let reach = if spread.is_finite() && spread.max(least) > 0.0 { (0.4 * spread).max(least) } else { 1.0 };
     let (first, last) = (10.0, 1e5);

@@ -1,11 +1,11 @@
-//! Genz's six families of integrands, in two dimensions: each is hard in one way, and each has a closed form.
+//! Genz's six families of integrands in two dimensions: each is difficult in one way, and has a closed form.
 
 use std::f64::consts::TAU;
 
 use super::integrand::bell;
 use crate::error::{Result, require};
 
-/// In which way an integrand of Genz's is hard.
+/// Genz's families, named after what makes them difficult.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Family {
     /// cos(2πw₁ + a₁x + a₂y)
@@ -16,7 +16,7 @@ pub enum Family {
     CornerPeak,
     /// e^(−a₁²(x − w₁)² − a₂²(y − w₂)²)
     Gaussian,
-    /// e^(−a₁|x − w₁| − a₂|y − w₂|): continuous, with a crease
+    /// e^(−a₁|x − w₁| − a₂|y − w₂|): continuous, with a kink
     Continuous,
     /// e^(a₁x + a₂y) where x ≤ w₁ and y ≤ w₂, else 0
     Discontinuous,
@@ -34,8 +34,8 @@ impl Family {
     ];
 }
 
-/// An integrand of one of the families over the unit square, with steepness a = (a₁, a₂) and place w = (w₁,
-/// w₂).
+/// An integrand of one of the families over the unit square, with steepness a = (a₁, a₂) and position w =
+/// (w₁, w₂).
 ///
 /// (A. Genz, "Testing multidimensional integration routines", 1984.)
 ///
@@ -60,7 +60,7 @@ impl Genz {
     /// The integrand.
     ///
     /// # Errors
-    /// If an a is not in \[0.01, 100\], where the closed forms keep their digits, or a w not in \[0, 1\].
+    /// If an a is not in \[0.01, 100\], where the closed forms are accurate, or a w not in \[0, 1\].
     pub fn new(family: Family, a: [f64; 2], w: [f64; 2]) -> Result<Self> {
         for a in a {
             require("Genz's a", a, (0.01..=100.0).contains(&a), "from 0.01 to 100")?;

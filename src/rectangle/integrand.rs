@@ -1,4 +1,4 @@
-//! The test set of worksheet 2.1: six integrands whose answers are known.
+//! The test set of worksheet 2.1: six integrands whose integrals are known.
 
 use std::f64::consts::{LN_2, PI};
 use std::fmt;
@@ -20,7 +20,8 @@ use crate::fast;
 /// | xy | 0 | 455.11 |
 /// | 1/√(x² + y²) | 16 ln(1 + √2) = 14.102 | ∞ |
 ///
-/// The last has a mean, so it can be estimated, but no variance, so its error bar means nothing.
+/// The last one has a finite mean, so it can be estimated, but an infinite variance, so its error bar is
+/// meaningless.
 ///
 /// ```
 /// use unbiased::rectangle::{Integrand, Rectangle};
@@ -31,17 +32,17 @@ use crate::fast;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Integrand {
-    /// f = 1: no variance at all, and no way to tell X from Y.
+    /// f = 1: the variance is 0, and mistakes such as X used for Y do not show.
     Constant,
-    /// f = x² + y²: a sum of a function of x and one of y, so all pairs are no better than independent ones.
+    /// f = x² + y²: a function of x plus one of y, for which all pairs are no better than independent ones.
     Paraboloid,
     /// f = 1 where x² + y² ≤ 4, else 0: a jump.
     Disc,
     /// f = e^(−x²−y²): smooth.
     Gaussian,
-    /// f = xy: 0 over a square about the origin, unless X is used for Y as well.
+    /// f = xy: its integral over a square about the origin is 0, unless X is used for Y as well.
     Product,
-    /// f = 1/√(x² + y²): a finite integral, an infinite variance if the rectangle holds the origin.
+    /// f = 1/√(x² + y²): a finite integral, but an infinite variance if the rectangle holds the origin.
     InverseDistance,
 }
 
@@ -53,7 +54,7 @@ impl Integrand {
     pub const ALL: [Self; 6] =
         [Self::Constant, Self::Paraboloid, Self::Disc, Self::Gaussian, Self::Product, Self::InverseDistance];
 
-    /// What it is called.
+    /// The name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Constant => "constant",
@@ -79,8 +80,8 @@ impl Integrand {
 
     /// f(x, y).
     ///
-    /// The inverse distance is 0 at the origin and wherever 1/r would overflow (r < 2⁻¹⁰²⁴): a point changes
-    /// no integral, is drawn with a probability of 2⁻¹⁰⁶, and an infinite draw would end the run.
+    /// The inverse distance is set to 0 at the origin and where 1/r would overflow (r < 2⁻¹⁰²⁴), as an
+    /// infinite draw would end the run. This changes no integral, and has probability 2⁻¹⁰⁶.
     #[inline(always)]
     pub fn at(self, x: f64, y: f64) -> f64 {
         match self {
@@ -95,8 +96,8 @@ impl Integrand {
 
     /// ∫∫ f over the rectangle.
     ///
-    /// `None` where the disc's edge cuts the rectangle's, and where the inverse distance's closed form would
-    /// cancel to fewer than 12 digits (a small rectangle far from the origin).
+    /// `None` if the disc's edge crosses the rectangle's, and if the closed form of the inverse distance
+    /// would cancel to fewer than 12 digits (a small rectangle far from the origin).
     pub fn integral(self, rectangle: &Rectangle) -> Option<f64> {
         let Rectangle { x: [a, b], y: [c, d], width, height, area, .. } = *rectangle;
         let (x, y) = (a.midpoint(b), c.midpoint(d));
@@ -125,8 +126,8 @@ impl Integrand {
     /// The variance of one draw A f(X, Y), A ∫∫ f² − (∫∫ f)².
     ///
     /// +∞ for the inverse distance if the origin lies in the rectangle or on its edge, otherwise `None`, as
-    /// it has no elementary form then. `None` as well where the disc's edge cuts the rectangle's, and where
-    /// the Gaussian hardly varies, so that its variance would cancel to fewer than 12 digits.
+    /// there is no elementary form. `None` as well if the disc's edge crosses the rectangle's, and if the
+    /// Gaussian is so nearly constant that its variance would cancel to fewer than 12 digits.
     pub fn variance(self, rectangle: &Rectangle) -> Option<f64> {
         let Rectangle { x: [a, b], y: [c, d], width, height, area, .. } = *rectangle;
         match self {
@@ -160,7 +161,7 @@ impl Integrand {
     /// ```
     /// use unbiased::rectangle::{Integrand, Rectangle};
     ///
-    /// // 32 values each of x and y: a gain for the bell, small for 32 times the evaluations, and none for
+    /// // 32 values each of x and y, at 32 times the evaluations: a small gain for the Gaussian, none for
     /// // the paraboloid
     /// let square = Rectangle::WORKSHEET;
     /// let variances = [(Integrand::Gaussian, 0.4826, 0.3732), (Integrand::Paraboloid, 22.756, 22.756)];
@@ -213,7 +214,7 @@ impl Integrand {
     }
 }
 
-/// Out of line, as it keeps a loop narrow.
+/// Not inlined, to keep the calling loop small.
 #[inline(never)]
 fn inverse_distance(x: f64, y: f64) -> f64 {
     let inverse = x.hypot(y).recip();
@@ -227,7 +228,7 @@ impl fmt::Display for Integrand {
     }
 }
 
-/// What a rectangle and the disc have in common.
+/// How a rectangle and the disc overlap.
 enum Overlap {
     None,
     Rectangle,
@@ -235,7 +236,7 @@ enum Overlap {
 }
 
 impl Overlap {
-    /// `None` if part of either.
+    /// `None` if they overlap in part.
     fn with_disc(&Rectangle { x: [a, b], y: [c, d], .. }: &Rectangle) -> Option<Self> {
         let radius = RADIUS_2.sqrt();
         let square = |[x, y]: [f64; 2]| x * x + y * y;
@@ -253,20 +254,20 @@ impl Overlap {
     }
 }
 
-/// The product, its least and greatest factor first: it over- or underflows only if the result does.
+/// The product, smallest and largest factor first, so that it over- or underflows only if the result does.
 fn product(mut factors: [f64; 3]) -> f64 {
     factors.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
     let [least, middle, greatest] = factors;
     least * greatest * middle
 }
 
-/// `value`, a difference of terms no larger than `largest`, if 12 digits of it are left.
+/// `value`, a difference of terms up to `largest`, unless cancellation leaves fewer than 12 digits.
 fn with_digits(value: f64, largest: f64) -> Option<f64> {
     (value.is_finite() && value >= largest / 1024.0).then_some(value)
 }
 
-/// ∫ e^(−kx²) dx from a to b, for k = 1 ½√π (erf b − erf a): by quadrature, to the last digits, where a
-/// difference of two erf would cancel.
+/// ∫ e^(−kx²) dx from a to b (for k = 1, ½√π (erf b − erf a)), by quadrature, as a difference of two erf
+/// cancels.
 pub(super) fn bell(k: f64, [a, b]: [f64; 2]) -> f64 {
     if a < 0.0 && 0.0 < b {
         return bell(k, [0.0, -a]) + bell(k, [0.0, b]);
@@ -292,7 +293,8 @@ pub(super) fn bell(k: f64, [a, b]: [f64; 2]) -> f64 {
     sum * (-k * square).exp() * (1.0 - k * lost)
 }
 
-/// Positive nodes and weights of the ten-point rule, exact to 4e-19 on a panel of [`bell`].
+/// Positive nodes and weights of the ten-point Gauss–Legendre rule; its error on a panel of [`bell`] is below
+/// 4e-19.
 const GAUSS_LEGENDRE: [(f64, f64); 5] = [
     (0.14887433898163122, 0.29552422471475287),
     (0.4333953941292472, 0.26926671930999635),

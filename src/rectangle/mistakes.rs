@@ -7,7 +7,8 @@ use super::Rectangle;
 use crate::check::{About, Exercise, Given, Mistake, Problem, Words};
 use crate::stream::Stream;
 
-/// ∫∫ f over a rectangle: the estimator's draw is A f(X, Y), or any other whose mean is the integral.
+/// The problem of estimating ∫∫ f over a rectangle. A draw is A f(X, Y), or any other whose mean is the
+/// integral.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Integral {
     /// \[a, b\] × \[c, d\]
@@ -25,7 +26,7 @@ pub enum Surface {
     Squares,
     /// f = xy
     Product,
-    /// f = x + 2y, odd, and not the same in x and y
+    /// f = x + 2y: odd, and not symmetric in x and y
     Plane,
 }
 
@@ -50,7 +51,7 @@ impl Integral {
         self.ends().map(|[from, to]| to - from)
     }
 
-    /// The point of the rectangle that two uniform numbers stand for.
+    /// The point of the rectangle for two uniform numbers.
     fn point(&self, u: f64, v: f64) -> [f64; 2] {
         let ([[a, _], [c, _]], [w, h]) = (self.ends(), self.sides());
         [a + w * u, c + h * v]
@@ -60,7 +61,7 @@ impl Integral {
 static PROBLEMS: LazyLock<Vec<Integral>> = LazyLock::new(|| {
     use Surface::{One, Plane, Product, Squares};
     let sheet = Rectangle::WORKSHEET;
-    // neither its area nor its perimeter nor its centre hides a mistake; and one that is far from square
+    // the area, perimeter and centre of the first hide no mistake; the second is far from square
     let others = [([0.3, 2.0], [-1.1, 3.0]), ([0.0, 1e-3], [0.0, 40.0])];
     let others = others.map(|(x, y)| Rectangle::new(x, y).unwrap_or(sheet));
     let on = |rectangle, surface| Integral { rectangle, surface };
@@ -100,13 +101,13 @@ impl Problem for Integral {
             }
     }
 
-    /// About the origin xy integrates to 0: there errors are measured against ∫∫ |f|.
+    /// xy integrates to 0 about the origin: errors are relative to ∫∫ |f| there.
     fn scale(&self) -> f64 {
         let truth = self.truth().abs();
         if truth > 0.0 {
             return truth;
         }
-        // 0 only where both ends of x, or both of y, are as far from 0
+        // 0 only if the range of x, or that of y, is symmetric about 0
         let absolute = |[from, to]: [f64; 2]| 0.5 * (to * to.abs() - from * from.abs());
         let [x, y] = self.ends().map(absolute);
         if self.surface == Surface::Product && x * y > 0.0 { x * y } else { self.rectangle.area() }
@@ -159,7 +160,7 @@ const fn words(id: Text, name: Text, formula: Text, mend: Text) -> Words {
     Words { id, question: "2.1", name, formula, mend }
 }
 
-/// The right points, and another factor than the area, a function of width and height.
+/// The right points, but another factor than the area, as a function of width and height.
 fn factor(words: Words, factor: fn(f64, f64) -> f64) -> Mistake {
     Mistake::new(words, move |p: &Integral, rng| {
         let ([x, y], [w, h]) = (p.point(rng.uniform(), rng.uniform()), p.sides());
@@ -167,7 +168,7 @@ fn factor(words: Words, factor: fn(f64, f64) -> f64) -> Mistake {
     })
 }
 
-/// The right factor, and other points, functions of the problem and two uniform numbers.
+/// The right factor, but other points, as functions of the problem and two uniform numbers.
 fn points(words: Words, at: fn(&Integral, f64, f64) -> [f64; 2]) -> Mistake {
     Mistake::new(words, move |p: &Integral, rng| {
         let [x, y] = at(p, rng.uniform(), rng.uniform());
@@ -175,7 +176,7 @@ fn points(words: Words, at: fn(&Integral, f64, f64) -> [f64; 2]) -> Mistake {
     })
 }
 
-/// The right factor and points, and another value than f's.
+/// The right factor and points, but another value than f's.
 fn value(words: Words, of: fn(f64) -> f64) -> Mistake {
     Mistake::new(words, move |p: &Integral, rng| {
         let [x, y] = p.point(rng.uniform(), rng.uniform());

@@ -1,7 +1,7 @@
-//! Section 2: integrals over a rectangle from uniform random points.
+//! Section 2: integrals over a rectangle, estimated from uniform random points.
 //!
-//! Of ∫∫ f(x, y) dx dy over [a, b] × [c, d] with area A = (b − a)(d − c), each of these is an unbiased
-//! [`Estimator`] whenever ∫∫ |f| is finite; its error bar means something when ∫∫ f² is finite, too.
+//! Each of these is an unbiased [`Estimator`] of ∫∫ f(x, y) dx dy over [a, b] × [c, d], with area A = (b −
+//! a)(d − c), if ∫∫ |f| is finite. Its error bar is valid if ∫∫ f² is finite, too.
 //!
 //! | estimator | one draw | evaluations |
 //! |---|---|---|
@@ -11,10 +11,10 @@
 //! | [`Rectangle::jittered`] | A/s² Σ f, one point in each cell of an s × s grid | s² |
 //! | [`Rectangle::sobol`] | A/n Σ f over a scrambled Sobol set of n points | n |
 //!
-//! The points of the last three depend on each other, so a whole replicate, randomised afresh, is one draw:
-//! draws are independent, and the error bar made of them is right.
+//! The points of the last three depend on each other. So one draw is a whole replicate with new random
+//! numbers: draws are independent, and their error bar is valid.
 //!
-//! One's own estimator for question 2.1 is checked by `examples/check_mine.rs`.
+//! `examples/check_mine.rs` checks your own estimator for question 2.1.
 
 #[cfg(feature = "workbook")]
 pub mod figures;
@@ -37,11 +37,11 @@ use crate::estimator::{Density, Estimator, from_uniforms};
 
 /// The rectangle [a, b] × [c, d], and the uniform distribution on it.
 ///
-/// X and Y are drawn independently, so their joint density is the product of the two:
-/// p(x, y) = p(x) p(y) = 1/(b − a) · 1/(d − c) inside, in 1/\[x y\], and 0 outside. (Worksheet 2.1.)
+/// X and Y are drawn independently, so their joint density is the product of the two: p(x, y) = p(x) p(y) =
+/// 1/(b − a) · 1/(d − c) inside, in 1/\[x y\], and 0 outside. (Worksheet 2.1.)
 ///
-/// X = a + (b − a)U is never outside by rounding: a itself has probability 2⁻⁵³, and b is drawn where b −
-/// 2⁻⁵³(b − a) is rounded to it. It is exact to the last place of the larger of a and X.
+/// Rounding never puts X = a + (b − a)U outside: X = a has probability 2⁻⁵³, and X = b is drawn only if b −
+/// 2⁻⁵³(b − a) rounds to b. X is accurate to the last place of the larger of a and X.
 ///
 /// ```
 /// use unbiased::{Budget, estimate, f_over_p, rectangle::Rectangle};
@@ -69,10 +69,6 @@ impl Rectangle {
 
     /// The rectangle of all (x, y) with a ≤ x ≤ b and c ≤ y ≤ d.
     ///
-    /// # Errors
-    /// If an end is not finite, a ≥ b, c ≥ d, or the width, the height, the area or 1/area leaves `f64`'s
-    /// normal range, where digits are lost.
-    ///
     /// ```
     /// use unbiased::rectangle::Rectangle;
     ///
@@ -81,6 +77,10 @@ impl Rectangle {
     /// assert_eq!(error.to_string(), "the end b of [a, b] must be finite and above a, not -2");
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If an end is not finite, a ≥ b, c ≥ d, or the width, the height, the area or 1/area is outside `f64`'s
+    /// normal range, where digits are lost.
     pub fn new([a, b]: [f64; 2], [c, d]: [f64; 2]) -> Result<Self> {
         require("the end a of [a, b]", a, a.is_finite(), "finite")?;
         require("the end b of [a, b]", b, b > a && b.is_finite(), "finite and above a")?;
@@ -136,8 +136,8 @@ impl Rectangle {
     fn x_at(&self, u: f64) -> f64 {
         let [a, b] = self.x;
         let x = a + u * self.width;
-        // never outside: u = 1 can come of rounding in the last cell of a grid, and a + (b − a) be rounded
-        // past b
+        // never outside: rounding in the last cell of a grid can give u = 1, and a + (b − a) can round to
+        // more than b
         if x < b { x } else { b }
     }
 

@@ -1,4 +1,4 @@
-//! Sets of points that depend on each other, each set one draw.
+//! Estimators whose draw is a whole set of points that depend on each other.
 
 use super::Rectangle;
 use crate::error::{Result, require_count};
@@ -7,17 +7,13 @@ use crate::placement::{jittered, sobol};
 use crate::stream::Stream;
 
 impl Rectangle {
-    /// The estimator A/n² Σᵢ Σⱼ f(Xᵢ, Yⱼ): n values of x, n of y, all n² pairs.
+    /// The estimator A/n² Σᵢ Σⱼ f(Xᵢ, Yⱼ) over all n² pairs of n values of x and n of y.
     ///
-    /// The sheet's 2n values give n independent pairs, or n² that are not. These are unbiased, too, since
-    /// every single pair is uniform, but the variance does not fall as 1/n²: with σ² = Var f(X, Y), σ_x² =
-    /// Var E\[f|X\] and σ_y² = Var E\[f|Y\] it is A² \[σ² + (n − 1)(σ_x² + σ_y²)\]/n². The n independent
-    /// pairs have A² σ²/n, which is never less, and is no more where f(x, y) = g(x) + h(y), since then σ² =
-    /// σ_x² + σ_y². (Efron & Stein 1981;
-    /// [`Integrand::all_pairs_variance`](super::Integrand::all_pairs_variance).)
-    ///
-    /// # Errors
-    /// If n is not from 1 to 2¹⁶.
+    /// The sheet's 2n values give n independent pairs, or n² dependent ones. The estimator is unbiased, as
+    /// every single pair is uniform, but its variance does not fall as 1/n². It is A² \[σ² + (n − 1)(σ_x² +
+    /// σ_y²)\]/n² with σ² = Var f(X, Y), σ_x² = Var E\[f|X\] and σ_y² = Var E\[f|Y\] (Efron & Stein 1981;
+    /// [`Integrand::all_pairs_variance`](super::Integrand::all_pairs_variance)). The n independent pairs have
+    /// A² σ²/n, which is never less. The two are equal for f(x, y) = g(x) + h(y), as then σ² = σ_x² + σ_y².
     ///
     /// ```
     /// use unbiased::{Budget, Run, rectangle::Rectangle};
@@ -28,6 +24,9 @@ impl Rectangle {
     /// assert_eq!(outcome.cost.evaluations, 1000 * 32 * 32);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If n is not from 1 to 2¹⁶.
     pub fn all_pairs<F: Fn(f64, f64) -> f64 + Sync>(self, f: F, n: u64) -> Result<AllPairs<F>> {
         // a draw is 2³² evaluations at most
         let ok = (1..=1 << 16).contains(&n);
@@ -38,7 +37,7 @@ impl Rectangle {
     /// The estimator A/s² Σ f over one uniform point in each cell of an s × s grid: [`jittered`] points for
     /// [`independent`](Self::independent).
     ///
-    /// The variance is that *within* the cells alone, A²/s⁴ Σ Var f(cell).
+    /// Only the variance *within* the cells is left, A²/s⁴ Σ Var f(cell).
     ///
     /// # Errors
     /// If the side s is not from 1 to 256.
@@ -49,9 +48,6 @@ impl Rectangle {
     /// The estimator A/n Σ f over a scrambled Sobol set of n points: [`sobol`] points for
     /// [`independent`](Self::independent).
     ///
-    /// # Errors
-    /// If n is not from 1 to 2¹⁶, after which the sequence would repeat.
-    ///
     /// ```
     /// use unbiased::{Budget, estimate, rectangle::Rectangle};
     ///
@@ -61,6 +57,9 @@ impl Rectangle {
     /// assert!(estimate.std_error().unwrap() < 2e-4); // 1024 × 100 independent points: 0.012
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If n is not from 1 to 2¹⁶, after which the sequence would repeat.
     pub fn sobol<F: Fn(f64, f64) -> f64 + Sync>(self, f: F, points: u64) -> Result<impl Estimator> {
         sobol(self.independent(f), points)
     }
@@ -90,7 +89,7 @@ impl<F: Fn(f64, f64) -> f64 + Sync> Estimator for AllPairs<F> {
     }
 }
 
-/// The sum A/n Σ f of a replicate, compensated (Neumaier 1974): 2³² terms are as accurate as one.
+/// The mean A/n Σ f of a replicate, by compensated summation (Neumaier 1974): accurate for 2³² terms.
 ///
 /// Terms are first scaled by the power of two below A/n, which is exact, so the sum overflows only where the
 /// result does.
@@ -120,7 +119,7 @@ impl Mean {
     }
 
     fn times_area(self) -> f64 {
-        // an infinite term has left NaN in what was lost: the infinity itself says more
+        // an infinite term makes `lost` NaN: return the infinity itself
         let sum = if self.sum.is_finite() { self.sum + self.lost } else { self.sum };
         sum / self.points * (self.area / self.scale)
     }

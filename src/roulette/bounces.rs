@@ -1,4 +1,4 @@
-//! The number of bounces N: its laws in closed form, and two ways to draw it.
+//! The number of bounces N: its distribution in closed form, and two ways to sample it.
 
 use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
@@ -10,12 +10,12 @@ use crate::fast;
 use crate::float::Extended;
 use crate::stream::Stream;
 
-/// The law of the number of bounces N ≥ 0 of a path that goes on with probability p_rr after each: P(N = k) =
-/// p_rrᵏ (1 − p_rr).
+/// The distribution of the number of bounces N ≥ 0 of a path that goes on with probability p_rr after each:
+/// P(N = k) = p_rrᵏ (1 − p_rr).
 ///
-/// These are the *failures* before the first success of a coin that ends the path with probability 1 − p_rr.
-/// Some libraries call the number of *trials*, N + 1, geometric instead. At p_rr = 1 a path never ends: N is
-/// infinite, so that every P(N = k) is 0. (Worksheet 5.1 to 5.3.)
+/// This is the geometric distribution that counts *failures* before the first success, where success ends the
+/// path with probability 1 − p_rr. Some libraries use the same name for the number of *trials*, N + 1. At
+/// p_rr = 1 a path never ends: N is infinite, and every P(N = k) is 0. (Worksheet 5.1 to 5.3.)
 ///
 /// ```
 /// use unbiased::roulette::BounceCount;
@@ -32,7 +32,7 @@ pub struct BounceCount {
 }
 
 impl BounceCount {
-    /// The law for this probability of going on.
+    /// The distribution for this continuation probability.
     ///
     /// # Errors
     /// Those of [`Roulette::new`].
@@ -49,12 +49,12 @@ impl BounceCount {
         power(self.p_rr, k.into()) * (1.0 - self.p_rr)
     }
 
-    /// P(N ≤ k) = 1 − pᵏ⁺¹, by `exp_m1`: for p near 1 the difference has no digits.
+    /// P(N ≤ k) = 1 − pᵏ⁺¹, computed with `exp_m1`, as the difference cancels for p near 1.
     pub fn cdf(&self, k: u64) -> f64 {
         one_minus_power(self.p_rr, u128::from(k) + 1)
     }
 
-    /// P(N > k) = pᵏ⁺¹, where 1 − P(N ≤ k) has no digits left for large k.
+    /// P(N > k) = pᵏ⁺¹, accurate for large k, where 1 − P(N ≤ k) cancels.
     pub fn survival(&self, k: u64) -> f64 {
         power(self.p_rr, u128::from(k) + 1)
     }
@@ -70,14 +70,11 @@ impl BounceCount {
         (p / (Extended::ONE - p).squared()).round()
     }
 
-    /// The smallest k with [`cdf`](Self::cdf)(k) ≥ u, found by bisection: a logarithm's guess can be one off
-    /// at a step.
+    /// The smallest k with [`cdf`](Self::cdf)(k) ≥ u, by bisection: rounding of a logarithm may be off by
+    /// one.
     ///
-    /// `u64::MAX` stands for infinity, the answer at u = 1 (no number of bounces is certain to be enough),
-    /// and for every u > 0 at p = 1.
-    ///
-    /// # Errors
-    /// If u is not in \[0, 1\].
+    /// The result is `u64::MAX`, for infinity, at u = 1 (no number of bounces is certain to be enough), and
+    /// at p = 1 for every u > 0.
     ///
     /// ```
     /// let bounces = unbiased::roulette::BounceCount::new(0.5)?;
@@ -85,9 +82,12 @@ impl BounceCount {
     /// assert_eq!(bounces.quantile(0.76)?, 2);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If u is not in \[0, 1\].
     pub fn quantile(&self, u: f64) -> Result<u64> {
         require("the probability u", u, (0.0..=1.0).contains(&u), "in [0, 1]")?;
-        // the rounded cdf reaches 1, the exact one never does
+        // the rounded cdf reaches 1, the exact one does not
         if u >= 1.0 {
             return Ok(u64::MAX);
         }
@@ -103,10 +103,7 @@ impl BounceCount {
         Ok(high)
     }
 
-    /// N drawn as it happens: one coin after another. Expected work: 1/(1 − p) coins a draw.
-    ///
-    /// # Errors
-    /// If p_rr = 1: a draw would never end.
+    /// N sampled by flipping one coin per bounce. Expected cost: 1/(1 − p) coins per draw.
     ///
     /// ```
     /// use unbiased::{Budget, estimate, roulette::BounceCount};
@@ -116,15 +113,15 @@ impl BounceCount {
     /// assert!(estimate.z(4.0).unwrap().abs() < 5.0);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If p_rr = 1: a draw would never end.
     pub fn by_simulation(&self) -> Result<BouncesBySimulation> {
         self.require_an_end()?;
         Ok(BouncesBySimulation { p_rr: self.p_rr })
     }
 
-    /// N drawn in one step, ⌊ln(1 − U)/ln p⌋, whatever p is.
-    ///
-    /// # Errors
-    /// If p_rr = 1: N is infinite.
+    /// N sampled in one step, ⌊ln(1 − U)/ln p⌋, at the same cost for every p.
     ///
     /// ```
     /// use unbiased::{Budget, estimate, roulette::BounceCount};
@@ -134,6 +131,9 @@ impl BounceCount {
     /// assert!(estimate.z(4.0).unwrap().abs() < 5.0);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If p_rr = 1: N is infinite.
     pub fn by_inversion(&self) -> Result<BouncesByInversion> {
         self.require_an_end()?;
         Ok(BouncesByInversion { per_ln: 1.0 / self.p_rr.ln() })
@@ -146,9 +146,8 @@ impl BounceCount {
 
 /// N by flipping coins; see [`BounceCount::by_simulation`].
 ///
-/// # The ends
-/// n bounces or more have probability pⁿ, and take n coins: without end only on a generator that is stuck
-/// below p.
+/// n bounces or more have probability pⁿ, and take n coins. A draw never ends only if the generator keeps
+/// giving numbers below p.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BouncesBySimulation {
     p_rr: f64,
@@ -175,9 +174,9 @@ impl Estimator for BouncesBySimulation {
 
 /// N = ⌊ln(1 − U)/ln p⌋; see [`BounceCount::by_inversion`].
 ///
-/// # The ends
-/// U = k·2⁻⁵³ is never 1, so the tail of N ends at 53 ln 2/−ln p, beyond which its probability is below 2⁻⁵³:
-/// at 164 bounces for p = 4/5, and at 3.3e17 for p = 1 − 2⁻⁵³, drawn as fast as any.
+/// # Largest sample
+/// U = k·2⁻⁵³ is never 1, so N is at most 53 ln 2/−ln p, beyond which the probability is below 2⁻⁵³: 164
+/// bounces for p = 4/5, and 3.3e17 for p = 1 − 2⁻⁵³.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BouncesByInversion {
     /// 1/ln p

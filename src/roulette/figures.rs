@@ -8,8 +8,8 @@ use crate::roulette::{LightModel, Roulette};
 use crate::run::{Budget, estimate};
 use crate::stream::Stream;
 
-/// 5.1: P(N = k) for two continuation probabilities, exact as bars and measured as points with their 95 %
-/// intervals.
+/// Figure for 5.1: P(N = k) for two continuation probabilities, exact as bars, and measured as points with 95
+/// % intervals.
 ///
 /// # Errors
 /// If a continuation probability is not in (0, 1).
@@ -17,7 +17,7 @@ pub fn bounces(p_rr: [f64; 2], draws: usize, seed: u64) -> Result<Figure> {
     let mut panels = Vec::new();
     for p in p_rr {
         let roulette = Roulette::new(p)?;
-        // up to the bounce that 99 of 100 rays do not reach
+        // up to the number of bounces that 99 % of the rays do not exceed
         let last = roulette.bounces().quantile(0.99)?.clamp(5, 60);
         let mean = roulette.bounces().mean();
         let mut counts = vec![0u32; last as usize + 1];
@@ -27,7 +27,7 @@ pub fn bounces(p_rr: [f64; 2], draws: usize, seed: u64) -> Result<Figure> {
                 *count += 1;
             }
         };
-        // long paths are not walked
+        // paths that are too long are not simulated
         if mean < 1000.0 {
             let sampler = roulette.bounces().by_simulation()?;
             (0..draws).for_each(|_| count(sampler.draw(&mut rng)));
@@ -117,8 +117,8 @@ pub fn mean_bounces(p_rr: [f64; 2], draws: u64, seed: u64) -> Result<Figure> {
         .draw()
 }
 
-/// 5.3: variance, cost and their product against the continuation probability q, with q ≤ ρ² shaded, where
-/// the variance is infinite.
+/// Figure for 5.3: variance, cost and their product against the continuation probability q. The range q ≤ ρ²,
+/// where the variance is infinite, is shaded.
 ///
 /// # Errors
 /// If it cannot be drawn.
@@ -183,8 +183,8 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
         .draw()
 }
 
-/// 5.3: the root mean square error against the number of vertices, of roulette and of paths truncated after k
-/// ≤ `max_k` and k ≤ 2 `max_k`.
+/// Figure for 5.3: RMSE against the number of vertices, for roulette and for paths truncated after k ≤
+/// `max_k` and k ≤ 2 `max_k`.
 ///
 /// # Errors
 /// If q is not in (0, 1), or `max_k` is too large.
@@ -193,7 +193,7 @@ pub fn truncation(model: &LightModel, q: f64, max_k: u64, replicates: u64, seed:
     let roulette = model.roulette(q)?;
     let endless = roulette.variance().is_infinite();
     let root = |square: Result<f64>| square.map_or(f64::NAN, f64::sqrt);
-    // from two paths on
+    // at least two paths
     let first = 10f64.powf(((2.0 * roulette.cost()).log10() - 1e-9).ceil().max(1.0));
     let last = 1e4 * first;
     let [short_paths, long_paths] = [model.truncated(short)?, model.truncated(long)?];
@@ -244,7 +244,7 @@ pub fn truncation(model: &LightModel, q: f64, max_k: u64, replicates: u64, seed:
     ] {
         let mut points = Vec::new();
         for vertices in [2.0, 20.0, 200.0, 2000.0].map(|part| part * first) {
-            // what would take long is left out
+            // leave out points that would take too long
             if vertices * replicates as f64 > 2e7 {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! What roulette costs and buys: a model of light paths in which all of it has a closed form.
+//! What roulette costs and gains: a model of light paths with closed forms for all of it.
 
 use super::coin;
 use crate::doubt::Doubt;
@@ -7,12 +7,12 @@ use crate::estimator::Estimator;
 use crate::float::Extended;
 use crate::stream::Stream;
 
-/// A model of light paths: vertex k = 0, 1, … sees the light with probability v, independently of the others,
-/// and what it sees has been reflected k times with albedo ρ. The light is Σ ρᵏ v = v/(1 − ρ), dimensionless:
+/// A model of light paths. Each vertex k = 0, 1, … sees the light with probability v, independently of the
+/// others, and its contribution has been reflected k times with albedo ρ. The radiance is Σ ρᵏ v = v/(1 − ρ),
 /// in units of the light's radiance.
 ///
-/// Two rival estimators of it end the sum: [`roulette`](Self::roulette) at random, without bias, and
-/// [`truncated`](Self::truncated) after a set number of vertices, with bias but less variance. Their mean
+/// Two estimators end the sum: [`roulette`](Self::roulette) at random, without bias, and
+/// [`truncated`](Self::truncated) after a fixed number of vertices, with bias but less variance. Their mean
 /// square errors at equal numbers of vertices cross at [`crossing`](Self::crossing). (Worksheet 5, "what
 /// roulette costs and buys".)
 ///
@@ -41,7 +41,7 @@ impl LightModel {
     pub fn new(albedo: f64, visibility: f64) -> Result<Self> {
         require("the albedo ρ", albedo, (0.0..1.0).contains(&albedo), "in [0, 1)")?;
         require("the visibility v", visibility, (0.0..=1.0).contains(&visibility), "in [0, 1]")?;
-        // + 0.0 takes the sign from −0
+        // + 0.0 turns −0 into 0
         Ok(Self { albedo: albedo + 0.0, visibility: visibility + 0.0 })
     }
 
@@ -55,16 +55,17 @@ impl LightModel {
         self.visibility
     }
 
-    /// The truth v/(1 − ρ).
+    /// The true value v/(1 − ρ).
     pub fn mean(&self) -> f64 {
         let Terms { one, rho, v } = self.terms();
         (v / (one - rho)).round()
     }
 
-    /// Paths that go on with probability q after every vertex and weigh what vertex k sees with (ρ/q)ᵏ.
+    /// Paths that go on with probability q after every vertex; the contribution of vertex k has weight
+    /// (ρ/q)ᵏ.
     ///
     /// # Errors
-    /// If q is not in (0, 1): a path never ends at 1, and sees one vertex only at 0, which is allowed where
+    /// If q is not in (0, 1): at 1 a path never ends, and at 0 it has only one vertex. q = 0 is allowed if
     /// nothing follows (ρ = 0 or v = 0).
     pub fn roulette(&self, q: f64) -> Result<RoulettePaths> {
         let nothing_follows = self.albedo == 0.0 || self.visibility == 0.0;
@@ -82,14 +83,15 @@ impl LightModel {
         Ok(TruncatedPaths { model: *self, max_k })
     }
 
-    /// The q* in [ρ, 1] at which roulette's variance × cost is least.
+    /// The q* in \[ρ, 1\] that minimizes roulette's variance × cost.
     ///
-    /// With A = v²ρ²/(1 − ρ)² and B = v(1 − v) it is the root of (B − A)q² + 2Aq − (A + Bρ²) = 0, computed as
-    /// ρ(a + b)/(aρ + √(b(a(1 − ρ²) + b))) with a = v/(1 − ρ)² and b = 1 − v: all terms are positive, A = B
-    /// is no special case, and neither are
+    /// With A = v²ρ²/(1 − ρ)² and B = v(1 − v) it is the root of (B − A)q² + 2Aq − (A + Bρ²) = 0. It is
+    /// computed as ρ(a + b)/(aρ + √(b(a(1 − ρ²) + b))) with a = v/(1 − ρ)² and b = 1 − v, where all terms are
+    /// positive, and these need no special case:
+    /// - A = B;
     /// - ρ = 0: q* = 0, as only the first vertex counts;
-    /// - v = 1: q* = 1, out of reach, as variance × cost = A/(q − ρ²) falls all the way to it;
-    /// - v = 0: every q has no variance, and q* = ρ is the limit for v → 0.
+    /// - v = 1: q* = 1, which is not allowed itself, as variance × cost = A/(q − ρ²) decreases up to q = 1;
+    /// - v = 0: the variance is 0 for every q, and q* = ρ is the limit for v → 0.
     pub fn optimum(&self) -> f64 {
         if self.albedo == 0.0 {
             return 0.0; // for v = 1, too, where the formula is 0/0
@@ -100,9 +102,9 @@ impl LightModel {
         root.round().clamp(self.albedo, 1.0)
     }
 
-    /// The number of vertices C from which on roulette with q has a smaller mean square error than truncation
-    /// after max_k: C = (Var × cost of roulette − Var × cost of truncation)/bias². 0 if it always has (or
-    /// neither has any), +∞ if it never has.
+    /// The number of vertices C above which roulette with q has a smaller mean square error than truncation
+    /// after max_k: C = (Var × cost of roulette − Var × cost of truncation)/bias². 0 if roulette is always
+    /// better or both errors are 0, +∞ if it never is better.
     ///
     /// # Errors
     /// Those of [`roulette`](Self::roulette) and [`truncated`](Self::truncated).
@@ -117,19 +119,19 @@ impl LightModel {
         Ok((lead / (v * missing.squared())).round())
     }
 
-    /// The numbers that all formulas are made of.
+    /// The numbers in all formulas, as double-doubles.
     fn terms(&self) -> Terms {
         Terms { one: Extended::ONE, rho: self.albedo.into(), v: self.visibility.into() }
     }
 
-    /// v(1 − v), the variance of what one vertex sees.
+    /// v(1 − v), the variance of whether a vertex sees the light.
     fn spread(&self) -> Extended {
         let Terms { one, v, .. } = self.terms();
         v * (one - v)
     }
 }
 
-/// Closed forms are computed in more digits than `f64` has and rounded once.
+/// Closed forms are computed in double-double and rounded once.
 struct Terms {
     one: Extended,
     rho: Extended,
@@ -149,13 +151,13 @@ impl RoulettePaths {
         self.q
     }
 
-    /// The mean v/(1 − ρ), which is the truth.
+    /// The mean v/(1 − ρ), which is the true value.
     pub fn mean(&self) -> f64 {
         self.model.mean()
     }
 
     /// The variance of one path, (A(1 − q) + Bq)/(q − ρ²) with A = v²ρ²/(1 − ρ)² and B = v(1 − v); **+∞ for q
-    /// ≤ ρ²**, where the weights grow faster than long paths get rare.
+    /// ≤ ρ²**, where weights grow faster than long paths become rare.
     pub fn variance(&self) -> f64 {
         self.extended_variance().round()
     }
@@ -165,7 +167,7 @@ impl RoulettePaths {
         1.0 / (1.0 - self.q)
     }
 
-    /// The mean square error of the mean of as many paths as take C vertices: variance × cost / C.
+    /// The mean square error of the mean of as many paths as take C vertices: variance × cost/C.
     ///
     /// # Errors
     /// If C is not positive and finite.
@@ -181,7 +183,7 @@ impl RoulettePaths {
         (later * mean.squared() * (one - self.q.into()) + self.model.spread()) * growth
     }
 
-    /// Variance × cost / v − (1 − v), written without that difference, which may have no digits.
+    /// Variance × cost/v − (1 − v), computed without that difference, which cancels.
     fn excess(&self) -> Extended {
         let Terms { one, rho, v } = self.model.terms();
         let (later, growth) = self.growth();
@@ -224,7 +226,7 @@ impl Estimator for RoulettePaths {
     }
 }
 
-/// Paths that end after a set number of vertices, a biased estimator of [`LightModel::mean`]; see
+/// Paths that end after a fixed number of vertices, a biased estimator of [`LightModel::mean`]; see
 /// [`LightModel::truncated`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TruncatedPaths {
@@ -245,7 +247,7 @@ impl TruncatedPaths {
         (v * sum).round()
     }
 
-    /// How far the mean is from the truth, −v ρᴷ⁺¹/(1 − ρ): a fraction ρᴷ⁺¹ of the light is missing.
+    /// The bias, mean minus true value, −v ρᴷ⁺¹/(1 − ρ): a fraction ρᴷ⁺¹ of the radiance is missing.
     pub fn bias(&self) -> f64 {
         0.0 - self.shortfall().round() // where nothing is missing it is 0, not −0
     }

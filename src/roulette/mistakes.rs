@@ -1,4 +1,4 @@
-//! Mistakes in Russian roulette, and in counting the bounces that it allows.
+//! Mistakes in Russian roulette, and in counting its bounces.
 
 use std::fmt;
 use std::sync::LazyLock;
@@ -7,14 +7,14 @@ use super::Roulette;
 use crate::check::{About, Exercise, Given, Mistake, Problem, Words};
 use crate::stream::Stream;
 
-/// Roulette around X: the estimator's draw is one X_rr.
+/// The problem of playing roulette on X: a draw is one X_rr.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wrapped {
     /// The continuation probability p_rr.
     pub p_rr: f64,
 }
 
-/// The number of bounces that roulette allows: the estimator's draw is one N.
+/// The problem of sampling the number of bounces under roulette: a draw is one N.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NumberOfBounces {
     /// The continuation probability p_rr.
@@ -22,14 +22,14 @@ pub struct NumberOfBounces {
 }
 
 impl Wrapped {
-    /// X = ½ + U, with a uniform number of its own: its mean is 1, and it rises with U, so that a coin that
-    /// reuses U shows.
+    /// X = ½ + U, with a uniform number of its own. Its mean is 1, and it increases with U, so that a coin
+    /// that reuses U is noticed.
     pub fn x(&self, rng: &mut Stream) -> f64 {
         0.5 + rng.uniform()
     }
 }
 
-// the sheet's 4/5 and 1/5, one that hides nothing, and one at the extreme
+// the sheet's 4/5 and 1/5, a generic value, and an extreme one
 const CHANCES: [f64; 4] = [0.8, 0.2, 0.83, 0.99];
 
 static WRAPPED: [Wrapped; 4] = wrapped();
@@ -138,7 +138,7 @@ const ABOUT_BOUNCES: About = About {
 
 type Text = &'static str;
 
-/// X times `lives` with this chance, times `dies` else, all functions of p.
+/// X times `lives` with this probability, else times `dies`; all are functions of p.
 fn coin(
     [id, name, formula, mend]: [Text; 4],
     chance: fn(f64) -> f64,
@@ -154,10 +154,10 @@ fn coin(
 #[rustfmt::skip] // a list to be read
 fn wrapper_mistakes() -> Vec<Mistake> {
     let compensate = "divide what goes on by the probability p_rr of going on";
-    let once = "divide by p_rr once, where the coin falls";
+    let once = "divide by p_rr once for each coin";
     let end = "an ended path is a draw of 0, and counts in n";
     let compare = "go on where U < p_rr";
-    let real = "divide by the chance that the coin really had";
+    let real = "divide by the probability that the coin really had";
     let p = |p: f64| p;
     let zero = |_: f64| 0.0;
     vec![
@@ -208,7 +208,7 @@ fn right_count(p: f64, u: f64) -> f64 {
     (u.ln() / p.ln()).floor()
 }
 
-/// Bounces whose number is a function of p and one U in (0, 1].
+/// A number of bounces that is a function of p and one U in (0, 1].
 fn count([id, name, formula, mend]: [Text; 4], n: fn(f64, f64) -> f64) -> Mistake {
     let words = Words { id, question: "5.1", name, formula, mend };
     Mistake::new(words, move |p: &NumberOfBounces, rng| n(p.p_rr, 1.0 - rng.uniform()))

@@ -1,10 +1,10 @@
-//! Section 5: Russian roulette, which ends paths at random and loses nothing on average.
+//! Section 5: Russian roulette, which ends paths at random without bias.
 //!
 //! X_rr = X/p_rr with probability p_rr, else 0, so E\[X_rr\] = E\[X\]. [`Roulette`] flips the coin,
-//! [`Roulette::wrap`] plays it on any estimator, [`BounceCount`] is the number N of bounces that it allows,
-//! with its laws in closed form, and [`LightModel`] says exactly what roulette costs and what it buys.
+//! [`Roulette::wrap`] applies it to any estimator, [`BounceCount`] is the distribution of the number of
+//! bounces N, and [`LightModel`] gives the exact cost and gain of roulette.
 //!
-//! One's own estimator for question 5.1 is checked by `examples/check_mine.rs`.
+//! `examples/check_mine.rs` checks your own estimator for question 5.1.
 
 use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
@@ -25,10 +25,11 @@ pub(crate) mod questions;
 pub use bounces::{BounceCount, BouncesByInversion, BouncesBySimulation};
 pub use light::{LightModel, RoulettePaths, TruncatedPaths};
 
-/// Russian roulette with continuation probability p_rr.
+/// Russian roulette with continuation probability p_rr: a coin that decides whether a path goes on.
+/// [`BounceCount`] is how often it does.
 ///
-/// It is a coin; how often it lets a path go on is [`BounceCount`]. (Worksheet 5; Arvo & Kirk, "Particle
-/// transport and image synthesis", 1990; *Physically Based Rendering*, 4th ed., section 2.2.4.)
+/// (Worksheet 5; Arvo & Kirk, "Particle transport and image synthesis", 1990; *Physically Based Rendering*,
+/// 4th ed., section 2.2.4.)
 ///
 /// ```
 /// use unbiased::roulette::Roulette;
@@ -43,7 +44,7 @@ pub struct Roulette {
 }
 
 impl Roulette {
-    /// Roulette that continues with probability p_rr; 1 is no roulette at all.
+    /// Roulette that continues with probability p_rr. With p_rr = 1 no path ever ends.
     ///
     /// # Errors
     /// If p_rr is not in (0, 1]. At p_rr = 0 every draw is 0, which is biased unless E\[X\] = 0.
@@ -57,12 +58,12 @@ impl Roulette {
         self.p_rr
     }
 
-    /// The number of bounces that it allows.
+    /// The distribution of the number of bounces.
     pub fn bounces(&self) -> BounceCount {
         BounceCount::of(self.p_rr)
     }
 
-    /// Flips the coin: true, to continue, with probability p_rr exactly, for every p_rr that `f64` can hold.
+    /// Flips the coin: true, to continue, with probability p_rr, exactly so for every p_rr in `f64`.
     ///
     /// ```
     /// use unbiased::{Stream, roulette::Roulette};
@@ -79,7 +80,7 @@ impl Roulette {
 
     /// The estimator X_rr: X/p_rr with probability p_rr, else 0 without drawing X.
     ///
-    /// The coin's random number is its own, so it is independent of X.
+    /// The coin takes a random number of its own, so it is independent of X.
     ///
     /// ```
     /// use unbiased::{Budget, estimate, inversion::Exponential, roulette::Roulette};
@@ -94,19 +95,19 @@ impl Roulette {
         RussianRoulette { roulette: *self, x }
     }
 
-    /// The variance of X_rr for an X with this mean μ and variance σ²: E\[X²\]/p − μ² = σ²/p + μ² (1 − p)/p.
+    /// The variance of X_rr for an X with mean μ and variance σ²: E\[X²\]/p − μ² = σ²/p + μ² (1 − p)/p.
     ///
-    /// It drops X's cost to a fraction p, but p·Var X_rr = σ² + μ² (1 − p) ≥ σ²: roulette on one X alone
-    /// never lowers variance × cost.
-    ///
-    /// # Errors
-    /// If the mean is not finite, or the variance is negative or NaN.
+    /// The cost falls to a fraction p of X's, but p·Var X_rr = σ² + μ² (1 − p) ≥ σ². So roulette on a single
+    /// X never lowers variance × cost.
     ///
     /// ```
     /// let roulette = unbiased::roulette::Roulette::new(0.25)?;
     /// assert_eq!(roulette.wrapped_variance(2.0, 1.0)?, 16.0); // (1 + 4)/0.25 − 4
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If the mean is not finite, or the variance is negative or NaN.
     pub fn wrapped_variance(&self, mean: f64, variance: f64) -> Result<f64> {
         require("the mean of X", mean, mean.is_finite(), "finite")?;
         require("the variance of X", variance, variance >= 0.0, "0 or positive")?;
@@ -119,8 +120,8 @@ const P_RR: &str = "the continuation probability p_rr";
 
 /// The estimator X_rr = X/p_rr with probability p_rr, else 0; see [`Roulette::wrap`].
 ///
-/// Its mean is X's, its variance [`Roulette::wrapped_variance`]. Where X/p_rr is beyond `f64` a draw is
-/// infinite, which ends a run with an error.
+/// Its mean is X's, its variance [`Roulette::wrapped_variance`]. If X/p_rr overflows, the draw is infinite,
+/// which ends a run with an error.
 #[derive(Debug, Clone, Copy)]
 pub struct RussianRoulette<X> {
     roulette: Roulette,
@@ -130,15 +131,15 @@ pub struct RussianRoulette<X> {
 impl<X: Estimator> Estimator for RussianRoulette<X> {
     #[inline]
     fn draw(&self, rng: &mut Stream) -> f64 {
-        // divided, not multiplied by 1/p_rr: that is infinite for p_rr < 5.6e-309
+        // divided, not multiplied by 1/p_rr, which is infinite for p_rr < 5.6e-309
         if self.roulette.continues(rng) { self.x.draw(rng) / self.roulette.p_rr } else { 0.0 }
     }
 }
 
-/// True with probability p exactly, for any p in \[0, 1\].
+/// True with probability p, exactly, for any p in \[0, 1\].
 ///
-/// U < p alone would round p up to the grid k·2⁻⁵³: p = 1e-300 to 1.1e-16. So where U is the last point of
-/// the grid below p, another number decides with the part of p that lies beyond it.
+/// U < p alone would round p up to the grid k·2⁻⁵³: 1e-300 to 1.1e-16. So if U is the last grid point below
+/// p, a second number decides, with probability (p − U)/2⁻⁵³.
 #[inline]
 pub(crate) fn coin<R: Rng + ?Sized>(rng: &mut R, mut p: f64) -> bool {
     const GRID: f64 = (1u64 << 53) as f64;
@@ -155,12 +156,12 @@ pub(crate) fn coin<R: Rng + ?Sized>(rng: &mut R, mut p: f64) -> bool {
     }
 }
 
-/// pⁿ, by powers of `f64`: exp(n ln p) is off by n·ln p ulp.
+/// pⁿ, by `powf`; exp(n ln p) has an error of n·ln p ulp.
 fn power(p: f64, n: u128) -> f64 {
     if n <= 1 << 53 {
         p.powf(n as f64)
     } else {
-        // such an n may have no f64, but its upper 53 bits and the rest have
+        // n may not be exact in f64, but its upper 53 bits and the rest are
         let low = n & 0x7ff;
         p.powf((n - low) as f64) * p.powf(low as f64)
     }

@@ -73,11 +73,11 @@ pub(crate) const QUESTIONS: &[Question] = &[
             r"P(N=0) = «1 − p_rr», \qquad P(N=2) = «p_rr»^2 \cdot «1 − p_rr» = «p_rr² (1 − p_rr)»",
             r"E[N] = \frac{1}{1 - p_{rr}} - 1 = \frac{p_{rr}}{1 - p_{rr}} = «p_rr/(1 − p_rr)»",
         ],
-        answer: "N = k takes k times going on and one stop. N + 1 counts trials up to the first stop, which \
-                 has probability 1 − p_rr, so its mean is \
-                 1/(1 − p_rr) = «1/(1 − p_rr)». The division by p_rr pays for the rays that stop: E[X_rr] = \
-                 p_rr · E[X]/p_rr = E[X], if the coin is independent of X. The same law is \
-                 drawn in one step by inversion, N = ⌊ln(1 − U)/ln p_rr⌋.",
+        answer: "N = k means going on k times and then stopping. N + 1 counts trials up to the first stop, \
+                 which has probability 1 − p_rr, so its mean is 1/(1 − p_rr) = «1/(1 − p_rr)». The division \
+                 by p_rr compensates for the rays that stop: E[X_rr] = p_rr · E[X]/p_rr = E[X], if the coin \
+                 is independent of X. The same law is drawn in one step by inversion, N = ⌊ln(1 − U)/ln \
+                 p_rr⌋.",
         numbers: &[
             Number {
                 part: "(i)",
@@ -131,9 +131,9 @@ pub(crate) const QUESTIONS: &[Question] = &[
         ],
         wrong: &[],
         on_the_original: Some(
-            "p_rr must lie in (0, 1], since p_rr = 0 loses all light, and the coin must be independent of X; \
-             the original says neither. “Geometric” counts trials there (mean 1/p), and failures in some \
-             libraries (mean 1/p − 1): look before using one.",
+            "p_rr must lie in (0, 1], since p_rr = 0 loses all light, and the coin must be independent of \
+             X; the original says neither. “Geometric” counts trials there (mean 1/p), and failures in some \
+             libraries (mean 1/p − 1): check which one a library means.",
         ),
         example: "q5_1_bounces",
         module: "roulette",
@@ -173,11 +173,11 @@ pub(crate) const QUESTIONS: &[Question] = &[
               = \frac1{1-q}, \quad A = \frac{v^2\rho^2}{(1-\rho)^2},\ B = v(1-v)",
         ],
         answer: "It grows, slowly at first and without bound as p_rr → 1, and its standard deviation is \
-                 larger than it everywhere. What that buys is seen in a model: at each vertex the path \
-                 sees the light with probability v = «v», a fraction ρ = «ρ» is reflected, and q is p_rr. A \
-                 larger q lowers the variance and raises the cost, and their product is least at q*, between \
-                 ρ and 1. Stopping after a fixed \
-                 number of bounces instead is biased: cheaper at first, overtaken by roulette later.",
+                 always larger. A model shows what that gains: at each vertex the path sees the light with \
+                 probability v = «v», a fraction ρ = «ρ» is reflected, and q is p_rr. A larger q lowers the \
+                 variance and raises the cost, and their product is least at q*, between ρ and 1. Stopping \
+                 after a fixed number of bounces instead is biased: cheaper at first, overtaken by roulette \
+                 later.",
         numbers: &[],
         wrong: &[
             Wrong { answer: "it lowers E[N]", slip: "p_rr is the probability of going on, not of stopping" },

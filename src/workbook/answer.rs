@@ -17,7 +17,7 @@ use crate::trade::Measured;
 pub enum Kind {
     /// Right, and checked against its truth.
     Answer,
-    /// Wrong on purpose, or of infinite variance: to be looked at, not to be checked.
+    /// Wrong on purpose, or of infinite variance: shown, but not checked.
     Demonstration,
 }
 
@@ -26,9 +26,9 @@ pub enum Kind {
 pub(super) enum Words {
     /// A classic mistake, in a few words.
     WrongOnPurpose(String),
-    /// Its error bar is not to be trusted.
+    /// The error bar cannot be trusted.
     Doubted(Doubt),
-    /// It was not run.
+    /// Not run.
     LeftOut,
 }
 
@@ -52,15 +52,15 @@ pub struct Answer {
     figures: Vec<Figure>,
 }
 
-/// With fewer draws than this a mean need not be near normal, and z says nothing.
+/// With fewer draws a mean may be far from normal, and z is meaningless.
 const FEWEST: u64 = 1000;
 
-/// The same where all draws are alike, and off.
+/// The same if all draws are equal, but differ from the truth.
 const FEWEST_ALIKE: u64 = 100_000;
 
 impl Answer {
-    /// An answer to `question`, the sheet's number first ("2.1", "5.1(ii)"), about `what`, which does not
-    /// tell it.
+    /// An answer to `question`, the sheet's number first ("2.1", "5.1(ii)"), about `what`, which must not
+    /// give the answer away.
     pub fn new(question: &str, what: &str) -> Self {
         Self {
             question: question.into(),
@@ -93,13 +93,13 @@ impl Answer {
         self.demonstration()
     }
 
-    /// It belongs to this part of its question: "(ii)".
+    /// The part of its question that it answers: "(ii)".
     pub(super) fn part_of_question(mut self, part: &str) -> Self {
         self.question += part;
         self
     }
 
-    /// A parameter that it was computed with; of the same name the last one counts.
+    /// A parameter that it was computed with; if the same name is given again, the last value counts.
     pub fn parameter(mut self, name: impl Into<Cow<'static, str>>, value: impl Into<Value>) -> Self {
         let (name, value) = (name.into(), value.into());
         match self.parameters.iter_mut().find(|(known, _)| *known == name) {
@@ -109,19 +109,19 @@ impl Answer {
         self
     }
 
-    /// The closed form's value.
+    /// The exact value.
     pub fn truth(mut self, truth: f64) -> Self {
         self.truth = Some(truth);
         self
     }
 
-    /// A value without an error bar, found numerically.
+    /// A value without an error bar, computed numerically.
     pub fn value(mut self, value: f64) -> Self {
         self.value = Some(value);
         self
     }
 
-    /// What came of a run.
+    /// The outcome of a run.
     pub fn outcome(mut self, outcome: &Outcome) -> Self {
         self.estimate = Some(outcome.estimate);
         self.cost = outcome.cost;
@@ -132,7 +132,7 @@ impl Answer {
         self
     }
 
-    /// What a comparison found of one estimator, with what decides its rank as parameters.
+    /// The result of a comparison for one estimator, with what its rank is based on as parameters.
     pub fn measured(mut self, rival: &Measured, seed: u64) -> Self {
         let draws = rival.estimate.draws() as f64;
         let count = |each: f64| (each * draws).round() as u64;
@@ -148,15 +148,15 @@ impl Answer {
             .parameter("efficiency", rival.efficiency())
     }
 
-    /// A sentence: the answer itself where the question has no number, or a word on this one. A second one
-    /// follows it.
+    /// A sentence: the answer itself if the question has no number, or a remark on the number. A second one
+    /// is appended.
     pub fn note(mut self, note: impl Into<String>) -> Self {
         let note = note.into();
         self.note = Some(self.note.map_or(note.clone(), |before| format!("{before} {note}")));
         self
     }
 
-    /// A figure that shows it.
+    /// A figure for it.
     pub fn figure(mut self, figure: Figure) -> Self {
         self.figures.push(figure);
         self
@@ -177,7 +177,7 @@ impl Answer {
         self.kind
     }
 
-    /// The closed form's value, if it has one.
+    /// The exact value, if there is one.
     pub fn exact(&self) -> Option<f64> {
         self.truth
     }
@@ -187,13 +187,13 @@ impl Answer {
         self.estimate.as_ref()
     }
 
-    /// How many standard errors the estimate lies from the truth, where there are both.
+    /// The difference of estimate and truth in standard errors, if both are known.
     pub fn z(&self) -> Option<f64> {
         self.estimate?.z(self.truth?)
     }
 
-    /// Whether the estimate agrees with the truth, |z| ≤ 4, where there are both, the row is not a
-    /// demonstration, and nothing is to be said against its error bar.
+    /// Whether the estimate agrees with the truth, |z| ≤ 4. `None` if one of them is missing, the row is a
+    /// demonstration, or its error bar is in doubt.
     pub fn agrees(&self) -> Option<bool> {
         if self.kind == Kind::Demonstration || self.doubt().is_some() {
             return None;
@@ -201,13 +201,13 @@ impl Answer {
         Some(self.z()?.abs() <= 4.0)
     }
 
-    /// Why its error bar is not to be trusted, if it is not: for a reason given, or because there are too few
-    /// draws, or all are the same.
+    /// Why its error bar cannot be trusted, if so: for a given reason, or because there are too few draws, or
+    /// all are equal.
     ///
-    /// It takes 1000 draws, or 100 000 where none of them differed and all are off: a value that comes up in
-    /// a draw with probability p is missed by n draws with probability 1e-12 or less from p = 27.6/n on, here
-    /// 3e-4. Where all have less than a hundredth of the truth, or are 0 and no truth is known, no number
-    /// will do: all of it may be in values as rare as that, as with a light too small to hit.
+    /// At least 1000 draws are needed, or 100 000 if all are equal but differ from the truth. A value of
+    /// probability p per draw is missed by all n draws with probability at most 1e-12 if p ≥ 27.6/n, here
+    /// 3e-4. If all draws are below a hundredth of the truth, or are 0 and no truth is known, no number of
+    /// draws is enough: the whole mean may come from rarer values, as with a light too small to hit.
     pub(super) fn doubt(&self) -> Option<Doubt> {
         if let Some(Words::Doubted(doubt)) = &self.words {
             return Some(doubt.clone());
@@ -225,7 +225,7 @@ impl Answer {
         }
     }
 
-    /// Whether it is right: as [`agrees`](Self::agrees), or to nine digits where it was found numerically.
+    /// Whether it is right: see [`agrees`](Self::agrees); to nine digits if it was computed numerically.
     pub(super) fn right(&self) -> Option<bool> {
         match (self.value, self.truth, self.kind) {
             (Some(value), Some(truth), Kind::Answer) => Some((value - truth).abs() <= 1e-9 * truth.abs()),
@@ -233,7 +233,7 @@ impl Answer {
         }
     }
 
-    /// ✓ or ✗, or in words why neither.
+    /// ✓ or ✗, or words that say why it is neither.
     pub(super) fn verdict(&self) -> &'static str {
         if let Some(doubt) = self.doubt() {
             return doubt.mark();
@@ -257,7 +257,7 @@ impl Answer {
         }
     }
 
-    /// What there is to say of its error bar, in a sentence, where the verdict does not say it.
+    /// A sentence of warning about its error bar, unless the verdict says it already.
     pub(super) fn caution(&self) -> Option<String> {
         match self.doubt()? {
             Doubt::TooFewDraws => None,
@@ -269,7 +269,7 @@ impl Answer {
         &self.parameters
     }
 
-    /// The value found numerically, or the mean estimated.
+    /// The value computed numerically, or the estimated mean.
     pub(super) fn found(&self) -> Option<f64> {
         self.value.or(self.estimate.map(|estimate| estimate.mean()))
     }
@@ -286,12 +286,12 @@ impl Answer {
         self.seconds
     }
 
-    /// By how much it falls short of the error asked for.
+    /// How far it is from the error asked for, if it was cut short.
     pub(super) fn shortfall(&self) -> Option<Shortfall> {
         self.shortfall
     }
 
-    /// What makes the whole of it, if it is a shard.
+    /// The data from which the whole run can be merged, if it is a shard.
     pub(super) fn part(&self) -> Option<&Part> {
         self.part.as_ref()
     }
@@ -321,7 +321,7 @@ mod tests {
         Answer::new("1.1", "").truth(truth).outcome(&outcome)
     }
 
-    /// U's mean is 1/2: at 1000 draws 0.4 is eleven std errors off, with fewer it is not judged.
+    /// U's mean is 1/2. With 1000 draws 0.4 is eleven standard errors off; with fewer it is not judged.
     #[test]
     fn what_is_wrong_is_marked_once_there_are_draws_enough() {
         let uniform = from_fn(|rng| rng.uniform());

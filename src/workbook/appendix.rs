@@ -1,27 +1,27 @@
-//! What the workbook says beside the questions: a text, tables and figures, on the page and by an example of
-//! its own.
+//! Appendices: text, tables and figures that answer no question of the sheet. Each has a page and an example
+//! of its own.
 
 use super::Answer;
 use crate::error::{Error, Result};
 use crate::plot::Figure;
 
-/// What is known of an example beside the questions before it is run.
+/// The command line of an appendix's example: what its `--help` and its error messages need.
 pub(super) struct Beside {
     /// The file in `examples/`, without `.rs`.
     pub example: &'static str,
-    /// What it does, in a paragraph.
+    /// A paragraph that describes it.
     pub about: &'static str,
-    /// What `--seconds` is to it, if anything.
+    /// What `--seconds` means to it, if it takes that option.
     pub seconds: Option<&'static str>,
-    /// Why it takes no other options than it does.
+    /// Why it does not take the other options.
     pub why: &'static str,
 }
 
 const ALL: [Beside; 2] = [
     Beside {
         example: "extremes",
-        about: "Where the obvious code breaks: formulas as one writes them down, inputs at which they fail, \
-                and what the crate gives there.",
+        about: "Where the obvious code breaks: textbook formulas, inputs at which they fail in floating \
+                point, and what the crate gives there.",
         seconds: None,
         why: "it evaluates each formula once, and has no student edition and no hint",
     },
@@ -35,14 +35,14 @@ const ALL: [Beside; 2] = [
     },
 ];
 
-/// The example beside the questions of this name.
+/// The appendix's example of this name.
 pub(super) fn beside(example: &str) -> Result<&'static Beside> {
     let known = ALL.iter().find(|beside| beside.example == example);
-    known.ok_or_else(|| Error::Usage(format!("there is no example {example} beside the questions")))
+    known.ok_or_else(|| Error::Usage(format!("there is no appendix example {example}")))
 }
 
 impl Beside {
-    /// Refuses an option of the questions' examples that it can do nothing with.
+    /// Refuses an option of the questions' examples that makes no sense for it.
     pub fn take(&self, option: &str) -> Result<()> {
         let refused = match option {
             "draws" | "error" | "threads" | "edition" | "hint" => true,
@@ -54,18 +54,18 @@ impl Beside {
     }
 }
 
-/// A part of the worksheet that answers no question of the sheet's. The student's edition leaves it out.
+/// A part of the worksheet that answers none of the sheet's questions. The student's edition leaves it out.
 #[derive(Debug, Clone)]
 pub struct Appendix {
     /// The file in `examples/`, without `.rs`.
     pub example: &'static str,
-    /// A few words.
+    /// The title, a few words.
     pub title: &'static str,
-    /// What it is about, in a paragraph.
+    /// An introduction, one paragraph.
     pub text: String,
     /// Its tables, in order.
     pub tables: Vec<Table>,
-    /// The numbers for programs: what `--json` gives.
+    /// The numbers for programs, which `--json` prints.
     pub records: Vec<Answer>,
     /// Its figures.
     pub figures: Vec<Figure>,
@@ -74,16 +74,16 @@ pub struct Appendix {
 /// A table; all cells are text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Table {
-    /// What it shows, in a line.
+    /// What it shows, in one line.
     pub caption: String,
-    /// The columns' names; the first one names what a row is about.
+    /// The columns' names; the first column says what a row is about.
     pub columns: Vec<String>,
-    /// As many cells a row as there are columns.
+    /// One cell per column in each row.
     pub rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// One with a caption, names of columns, and rows.
+    /// A table from its caption, its columns' names, and its rows.
     pub fn new<C: Into<String>>(
         caption: &str,
         columns: impl IntoIterator<Item = C>,
@@ -96,7 +96,7 @@ impl Table {
         }
     }
 
-    /// One JSON object a row, by the columns' names.
+    /// One JSON object per row, keyed by the columns' names.
     pub(crate) fn json(&self) -> String {
         let object = |row: &Vec<String>| {
             let cells = self.columns.iter().cloned().zip(row.iter().map(|cell| cell.clone().into()));

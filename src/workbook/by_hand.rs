@@ -1,7 +1,8 @@
-//! Numbers worked out by hand: what a question asks for, the wrong answers that people arrive at, and how.
+//! Numbers worked out by hand: the answers that questions ask for, and known wrong answers with the slip
+//! behind each.
 //!
-//! An answer, right or wrong, stands here as the formula that people read; its value is that formula's, at
-//! the question's parameters.
+//! Every answer, right or wrong, is stored as the formula that people read. Its value is computed from that
+//! formula, at the question's parameters.
 
 use std::fmt;
 
@@ -13,15 +14,15 @@ use crate::numbers::{rounded, shortened};
 /// A number that a question asks for.
 #[derive(Debug, Clone, Copy)]
 pub struct Number {
-    /// Which part of the question asks for it, "(ii)"; empty where the question asks for one number.
+    /// The part of the question that asks for it, "(ii)"; empty if the question asks for one number only.
     pub part: &'static str,
     /// Its symbol.
     pub symbol: &'static str,
-    /// What it is, in words.
+    /// A description in words.
     pub what: &'static str,
-    /// The right answer for all parameters, a formula in the letters; " or " stands between several.
+    /// The right answer for all parameters: a formula in the letters, or several with " or " between them.
     pub formula: &'static str,
-    /// The estimator c/n Σ … where it is the factor c of one: then c/n will do for an answer.
+    /// If it is the factor c of an estimator c/n Σ …, that estimator; then c/n is accepted, too.
     pub over_n: Option<&'static str>,
     /// The wrong answers.
     pub slips: &'static [Slip],
@@ -30,55 +31,51 @@ pub struct Number {
 /// A wrong answer that is a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Slip {
-    /// Its name for programs, which no other wrong answer to the same question has.
+    /// Its name for programs, unique among the wrong answers to the question.
     pub id: &'static str,
-    /// What is answered, for all parameters, as a formula; " or " stands between several.
+    /// The wrong answer for all parameters: a formula, or several with " or " between them.
     pub answer: &'static str,
-    /// How it comes about.
+    /// The slip that leads to it.
     pub words: &'static str,
-    /// Whether it is shown with the solution, too.
+    /// Whether it is also listed with the solution.
     pub classic: bool,
 }
 
-/// One that serves to judge answers.
+/// A wrong answer that is only used to judge answers.
 pub(crate) const fn slip(id: &'static str, answer: &'static str, words: &'static str) -> Slip {
     Slip { id, answer, words, classic: false }
 }
 
-/// One that is shown with the solution, too.
+/// A wrong answer that is also listed with the solution.
 pub(crate) const fn classic(id: &'static str, answer: &'static str, words: &'static str) -> Slip {
     Slip { id, answer, words, classic: true }
 }
 
-/// What an answer worked out by hand looks like.
+/// The judgement of an answer worked out by hand.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Judgement {
     /// Right to the digits given.
     Right,
-    /// Near, but with too few digits.
+    /// Close, but with too few digits.
     TooFewDigits {
-        /// How many significant digits would do.
+        /// How many significant digits are enough.
         needed: u32,
     },
-    /// A known wrong answer, to the digits given; the nearest first.
+    /// A known wrong answer, to the digits given; if several fit, the nearest first.
     LooksLike(Vec<Slip>),
-    /// Wrong, and none of the known ones.
+    /// Wrong, and no known wrong answer.
     Unknown {
-        /// The answer divided by the right one, where that is a number.
+        /// The answer divided by the right one, if that is a number.
         ratio: Option<f64>,
     },
 }
 
-/// What the answer `text` to a question ("1.2", "5.1(ii)") looks like, at the sheet's parameters: right to
-/// the digits given, or one of the known slips.
+/// Judges the answer `text` to a question ("1.2", "5.1(ii)") at the sheet's parameters: right to the digits
+/// given, one of the known slips, or neither.
 ///
-/// The text is a number, a fraction, or an expression: `1.386`, `16/125`, `12.8 %`, `2 ln 2`,
-/// `x = -log(1 - 0.75)`, `2ρ/n`. What is written without a decimal point counts as exact; decimals may be
-/// rounded, or cut off, at the last digit. Letters are compared as letters: `ρ` is right where ρ is, whatever
-/// its value.
-///
-/// # Errors
-/// If the question asks for no number, or for several and not said which, or the text is not understood.
+/// The text is a number, a fraction, or an expression: `1.386`, `16/125`, `12.8 %`, `2 ln 2`, `x = -log(1 -
+/// 0.75)`, `2ρ/n`. Numbers without a decimal point are exact; decimals may be rounded or cut off at the last
+/// digit. Letters are compared as letters: `ρ` is right if the answer is ρ, whatever its value.
 ///
 /// ```
 /// use unbiased::workbook::{Judgement, judge_answer};
@@ -88,16 +85,15 @@ pub enum Judgement {
 /// assert_eq!(judge_answer("3.2", "ρ")?, Judgement::Right);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
+///
+/// # Errors
+/// If the question asks for no number, or for several and the part is missing, or the text is not understood.
 pub fn judge_answer(question: &str, text: &str) -> Result<Judgement> {
     judge_answer_at(question, text, &Options::default(), None)
 }
 
-/// The same at the parameters that the options name, and with so many significant digits at least where
-/// `digits` are asked for: an answer that is exact has enough.
-///
-/// # Errors
-/// Those of [`judge_answer`], and where a parameter lies outside its domain, or the right answer is no
-/// number.
+/// The same at the parameters in `options`. With `digits`, at least that many significant digits are
+/// required, unless the answer is exact.
 ///
 /// ```
 /// use unbiased::workbook::{Judgement, Options, judge_answer_at, question};
@@ -110,6 +106,9 @@ pub fn judge_answer(question: &str, text: &str) -> Result<Judgement> {
 /// assert_eq!(judge_answer_at("1.2", "1.3", &sheet, Some(3))?, Judgement::TooFewDigits { needed: 3 });
 /// # Ok::<(), unbiased::Error>(())
 /// ```
+///
+/// # Errors
+/// Those of [`judge_answer`], and if a parameter is outside its domain or the right answer is infinite.
 pub fn judge_answer_at(
     question: &str,
     text: &str,
@@ -119,7 +118,7 @@ pub fn judge_answer_at(
     judged(question, text, options, digits).map(|(judgement, _)| judgement)
 }
 
-/// The same with the ratio to the right answer, where there is one.
+/// The same with the ratio to the right answer, if there is one.
 pub(super) fn judged(
     question: &str,
     text: &str,
@@ -137,12 +136,12 @@ pub(super) fn judged(
             number.part
         )));
     }
-    // with letters in it the ratio is one only if it is the same whatever they stand for
+    // an answer with letters has a ratio only if that is the same for all values of the letters
     let (elsewhere, others) = answer.with_letters(0.9)?;
     let there = question.with_letters(number.formula, &others)?;
     let over =
         |given: &Known, truths: &[f64]| truths.iter().map(|truth| given.value / truth).collect::<Vec<_>>();
-    // of several right answers the one that is nearest
+    // if there are several right answers, the nearest one
     let ratios = over(&given, &truths).into_iter().zip(over(&elsewhere, &there));
     let [here, there] = ratios
         .min_by(|a, b| (a.0 - 1.0).abs().total_cmp(&(b.0 - 1.0).abs()))
@@ -173,14 +172,14 @@ pub(super) fn judged(
     Ok((judgement, ratio))
 }
 
-/// Numbers nearer than this, relatively, are the same: they were computed in other ways.
+/// Numbers closer than this, relatively, are equal up to rounding.
 const SAME: f64 = 1e-9;
 
 fn same(a: f64, b: f64) -> bool {
     a == b || (a - b).abs() <= SAME * a.abs().max(b.abs())
 }
 
-/// How far off the nearest of these values is that the number given may stand for.
+/// The distance from the nearest of these values to the numbers that `given` may stand for.
 fn nearest(given: &Known, values: &[f64]) -> Option<f64> {
     let off = values.iter().filter_map(|value| {
         let off = value - given.value;
@@ -191,12 +190,12 @@ fn nearest(given: &Known, values: &[f64]) -> Option<f64> {
     off.min_by(f64::total_cmp)
 }
 
-/// Whether a number that is `off` from the right one is known too poorly to be taken for it: to half a unit
-/// of the digits asked for, or to 5 %.
+/// Whether a number that is `off` from the right one has too few digits to count as right: off by more than
+/// half a unit of the digits asked for, or by more than 5 %.
 fn too_coarse(given: &Known, off: f64, truths: &[f64], digits: Option<u32>) -> bool {
     let truth = truths.iter().fold(0.0, |largest: f64, truth| largest.max(truth.abs()));
     let last_digit = |digits: u32| 10f64.powf(truth.log10().floor() + 1.0 - f64::from(digits.max(1)));
-    // what rounding leaves of a 0 is one
+    // a value this close to 0 is 0 up to rounding
     let unit = digits.map_or(0.1 * truth, last_digit).max(1e-12) * (1.0 + SAME);
     given.below.max(given.above) > unit || digits.is_some() && off > 0.5 * unit
 }
@@ -221,18 +220,18 @@ pub(super) fn asked(question: &str) -> Result<(&'static Question, &'static Numbe
 }
 
 impl Number {
-    /// What is asked for, in words: "the factor c in c/n Σ L_i".
+    /// A description of what is asked for: "the factor c in c/n Σ L_i".
     pub fn asked(&self) -> String {
         self.over_n.map_or(self.what.into(), |sum| format!("{} in {sum}", self.what))
     }
 }
 
 impl Question {
-    /// The values of a formula in its letters, or of several with " or " between them, at the parameters that
-    /// the options name.
+    /// The values of a formula in its letters, or of several with " or " between them, at the parameters in
+    /// `options`.
     ///
     /// # Errors
-    /// If a parameter lies outside its domain, or the formula is none.
+    /// If a parameter is outside its domain, or the formula cannot be read.
     pub fn evaluate(&'static self, formula: &str, options: &Options) -> Result<Vec<f64>> {
         let options = options.for_question(self);
         self.with_letters(formula, &self.values(&options)?)
@@ -243,7 +242,7 @@ impl Question {
     }
 }
 
-/// An answer taken apart.
+/// A parsed answer.
 struct Answered<'a> {
     question: &'static Question,
     number: &'static Number,
@@ -267,12 +266,12 @@ impl<'a> Answered<'a> {
         spellings.extend(number.over_n.map(|_| N));
         let tokens = grammar::read(text, &spellings, &exact);
         let answer = Self { question, number, text, tokens: tokens.unwrap_or_default(), letters };
-        // no token at all is no number, either
+        // an answer without tokens is no number, either
         answer.with_letters(1.0).map(|_| answer)
     }
 
-    /// The value given and what the letters stand for: those in the answer for generic numbers, times
-    /// `scale`, the others for the parameters.
+    /// The value of the answer and the letters' values. Letters that occur in the answer get generic numbers
+    /// times `scale`, the others the parameters.
     fn with_letters(&self, scale: f64) -> Result<(Known, Vec<f64>)> {
         let holds = |index: usize| self.tokens.contains(&Token::Letter(index));
         let own = self.question.letters().zip(&self.letters).enumerate();
@@ -289,12 +288,12 @@ impl<'a> Answered<'a> {
         let Some(sum) = self.number.over_n.filter(|_| holds(letters.len())) else {
             return Ok((given, letters));
         };
-        // c/n for c
+        // c/n stands for c
         let (c, elsewhere) = (n * given.value, at(2.0 * n).map(|given| 2.0 * n * given.value));
         if !elsewhere.is_some_and(|elsewhere| same(c, elsewhere)) {
             let text = excerpt(self.text);
             return Err(Error::Usage(format!(
-                "the answer \"{text}\" is not a number over n: asked for is the c of {sum}"
+                "the answer \"{text}\" is not a number over n: give the c of {sum}, or c/n"
             )));
         }
         Ok((given.through(c, n), letters))
@@ -310,15 +309,15 @@ impl<'a> Answered<'a> {
         };
         let text = excerpt(self.text);
         Error::Usage(format!(
-            "the answer \"{text}\" is not understood: numbers, fractions, + − × / ^, brackets, ln, log10, \
-             exp, √, π, e{letters} are"
+            "the answer \"{text}\" is not understood. Allowed are numbers, fractions, + − × / ^, brackets, \
+             ln, log10, exp, √, π, e{letters}"
         ))
     }
 }
 
 const N: &[&str] = &["n"];
 
-/// So much of a text as a sentence has room for, on one line.
+/// The beginning of a text, on one line, short enough for a sentence.
 fn excerpt(text: &str) -> String {
     const MOST: usize = 40;
     let mut excerpt: String = text.chars().take(MOST).map(|c| if c.is_control() { ' ' } else { c }).collect();
@@ -348,8 +347,8 @@ impl fmt::Display for Judgement {
 }
 
 impl Question {
-    /// Its classic wrong answers, each with the slip that leads there: those that are numbers with their
-    /// values at the question's parameters, unless they are right there.
+    /// Its classic wrong answers, each with its slip. Those that are numbers have their values at the
+    /// question's parameters, and are left out if they are right there.
     pub(super) fn classic_wrong_answers(
         &'static self,
         options: &Options,

@@ -1,11 +1,11 @@
-//! How answers are written: numbers, the question's letters, and what is done with them.
+//! The grammar of answers: numbers, the question's letters, and operations.
 //!
-//! A number read is known to its last digit only, and so is what is computed from it: "2*0.693" is 1.386,
-//! give or take 0.001.
+//! A number is known only to its last digit, and so is everything computed from it: "2*0.693" is 1.386 ±
+//! 0.001.
 
 use std::f64::consts::{E, LN_2, LN_10, PI};
 
-/// A number known to lie between `value - below` and `value + above`; both are 0 where it is exact.
+/// A number between `value - below` and `value + above`; both are 0 if it is exact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Known {
     pub value: f64,
@@ -18,15 +18,15 @@ impl Known {
         Self { value, below: 0.0, above: 0.0 }
     }
 
-    /// A function of this number, by its value and its slope here.
+    /// A function of this number, from its value and slope here.
     pub fn through(self, value: f64, slope: f64) -> Self {
         let (below, above) = if slope < 0.0 { (self.above, self.below) } else { (self.below, self.above) };
-        // what is exact stays so, however steep the function is
+        // an exact number stays exact, however steep the function
         let reach = |reach: f64| if reach == 0.0 { 0.0 } else { reach * slope.abs() };
         Self { value, below: reach(below), above: reach(above) }
     }
 
-    /// A function of two numbers, by its value and its slopes here.
+    /// A function of two numbers, from its value and slopes here.
     fn of_two(value: f64, (a, slope_a): (Self, f64), (b, slope_b): (Self, f64)) -> Self {
         let (a, b) = (a.through(value, slope_a), b.through(value, slope_b));
         Self { value, below: a.below + b.below, above: a.above + b.above }
@@ -39,10 +39,10 @@ impl Known {
     }
 }
 
-/// What an answer is made of.
+/// A token of an answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Token {
-    /// Digits, which may follow nothing that they could be multiplied by without a sign.
+    /// A number. Unlike a letter, it must not follow a factor without a multiplication sign.
     Number(Known),
     Constant(f64),
     /// Which of the question's letters.
@@ -76,7 +76,7 @@ impl Function {
     }
 }
 
-/// Words of more than one letter may be written in capitals, too.
+/// Words of more than one letter may also be written in capitals.
 const WORDS: [(&str, Token); 16] = [
     ("ln", Token::Function(Function::Ln)),
     ("log", Token::Function(Function::Ln)),
@@ -96,15 +96,15 @@ const WORDS: [(&str, Token); 16] = [
     ("𝑒", Token::Constant(E)),
 ];
 
-/// An answer is short. This also bounds how deep its brackets nest.
+/// The longest answer in characters, which also limits the nesting of brackets.
 const LONGEST: usize = 200;
 
-/// Takes an answer apart, what stands before its last "=" or "≈" left out; None where something is in it
-/// that is no part of an answer.
+/// Splits an answer into tokens, without what stands before its last "=" or "≈". `None` if something in it is
+/// no token.
 ///
-/// `letters` are the question's, each with all its spellings. A decimal is known to half a unit of its last
-/// digit if it was rounded, and to a whole one if it was cut off there, unless it is one of the `exact`
-/// numbers.
+/// `letters` are the question's letters, each with all its spellings. A decimal may be rounded at its last
+/// digit, with an error of half a unit, or cut off there, with an error of up to one; numbers listed in
+/// `exact` are exact.
 pub(super) fn read(text: &str, letters: &[&[&str]], exact: &[f64]) -> Option<Vec<Token>> {
     let answer = text.rsplit(['=', '≈', '~']).next()?;
     let answer = answer.trim_end_matches(|c: char| c.is_whitespace() || ".,;".contains(c));
@@ -150,7 +150,7 @@ fn number<'c>(chars: &'c [char], exact: &[f64]) -> Option<(Token, &'c [char])> {
     if matches!(chars.get(end), Some('e' | 'E')) {
         let sign = usize::from(matches!(chars.get(end + 1), Some('+' | '-' | '−')));
         let length = digits(end + 1 + sign);
-        // otherwise it is Euler's number
+        // an e without digits after it is Euler's number
         if length > 0 {
             end += 1 + sign + length;
         }
@@ -187,7 +187,7 @@ fn word<'c>(chars: &'c [char], letters: &[&[&str]]) -> Option<(Token, &'c [char]
         let length = word.chars().count();
         let (next, rest) = chars.split_at_checked(length)?;
         let same = |(a, b): (char, &char)| a == *b || length > 1 && a.eq_ignore_ascii_case(b);
-        // log100 is the logarithm of 100
+        // log100 is the logarithm of 100, not log10 of 0
         let number_follows = rest.first().is_some_and(|c| c.is_ascii_digit() || ".,".contains(*c));
         let cut = word.ends_with(|c: char| c.is_ascii_digit()) && number_follows;
         (word.chars().zip(next).all(same) && !cut).then_some((length, token, rest))
@@ -195,14 +195,13 @@ fn word<'c>(chars: &'c [char], letters: &[&[&str]]) -> Option<(Token, &'c [char]
     fitting.max_by_key(|(length, ..)| *length).map(|(_, token, rest)| (token, rest))
 }
 
-/// The value of an answer with these values of the letters, finite or not; None where it cannot be
-/// understood.
+/// The value of an answer for these values of the letters, finite or not; `None` if it cannot be understood.
 pub(super) fn evaluate(tokens: &[Token], letters: &[f64]) -> Option<Known> {
     let mut rest = Expression { tokens, letters };
     rest.sum().filter(|_| rest.tokens.is_empty())
 }
 
-/// What is left to be read: a sum of products of powers.
+/// The tokens still to be read: a sum of products of powers.
 struct Expression<'t> {
     tokens: &'t [Token],
     letters: &'t [f64],
@@ -230,7 +229,7 @@ impl Expression<'_> {
                 return Some(sum);
             };
             let term = self.product()?;
-            // 1/10 + 2/10 − 3/10 is not 0, but for this
+            // without this, 1/10 + 2/10 − 3/10 would not be 0
             let rounding = f64::EPSILON * (sum.value.abs() + term.value.abs());
             sum = Known::of_two(sum.value + sign * term.value, (sum, 1.0), (term, sign));
             (sum.below, sum.above) = (sum.below + rounding, sum.above + rounding);
@@ -266,7 +265,7 @@ impl Expression<'_> {
             } else if self.take('%') {
                 base = base.through(base.value / 100.0, 0.01);
             } else if self.take('^') {
-                // the exponent's own powers come first
+                // right-associative: the exponent's own powers come first
                 base = base.power(self.power()?);
             } else {
                 return Some(base);

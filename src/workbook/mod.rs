@@ -1,5 +1,5 @@
-//! The table of questions, the options that all examples share, and how answers are printed, written as JSON
-//! and put on a page.
+//! The questions, the options that all examples share, and the output of answers: as text, as JSON and as
+//! pages.
 //!
 //! An example adds rows to a [`Sheet`], and has a one-line `main`:
 //!
@@ -61,31 +61,31 @@ use appendix::Beside;
 use options::{Asked, Request};
 use sheet::Voice;
 
-/// One question of the worksheet, with all that is known about it before anything is run.
+/// One question of the worksheet, with all that is fixed before anything is run.
 ///
-/// Texts are plain; `latex` is LaTeX, shown on the page. What stands between « and » in them is a formula in
-/// the question's letters, as answers are written: [`at`](Self::at) puts its value at the parameters there.
+/// Texts are plain, and `latex` is LaTeX for the page. A part between « and » is a formula in the question's
+/// letters, written as answers are; [`at`](Self::at) replaces it by its value at the parameters.
 #[derive(Debug, Clone, Copy)]
 pub struct Question {
     /// The worksheet's number.
     pub id: &'static str,
-    /// A few words, which do not tell the answer.
+    /// A few words that do not give the answer away.
     pub title: &'static str,
     /// What is asked.
     pub statement: &'static str,
-    /// A nudge that does not tell the answer.
+    /// A hint that does not give the answer away.
     pub hint: &'static str,
-    /// The closed form in a line of plain text.
+    /// The closed form in one line of plain text.
     pub formula: &'static str,
-    /// The same in LaTeX, a displayed formula each.
+    /// The same in LaTeX, one displayed formula each.
     pub latex: &'static [&'static str],
-    /// Why it is so, in a paragraph.
+    /// The explanation, one paragraph.
     pub answer: &'static str,
-    /// The numbers that it asks for, with the wrong ones that people arrive at.
+    /// The numbers that it asks for, with known wrong ones.
     pub numbers: &'static [Number],
-    /// What else people answer.
+    /// Classic wrong answers that are not numbers.
     pub wrong: &'static [Wrong],
-    /// Where the sheet as it was handed out needs correcting.
+    /// A correction to the sheet as it was handed out.
     pub on_the_original: Option<&'static str>,
     /// The file in `examples/`, without `.rs`.
     pub example: &'static str,
@@ -93,14 +93,14 @@ pub struct Question {
     pub module: &'static str,
     /// Its own options.
     pub parameters: &'static [Parameter],
-    /// Letters of its formulas that follow from these.
+    /// Further letters of its formulas, computed from the parameters.
     pub derived: &'static [Letter],
 }
 
-/// A classic wrong answer that is no number.
+/// A classic wrong answer that is not a number.
 #[derive(Debug, Clone, Copy)]
 pub struct Wrong {
-    /// What is answered.
+    /// The wrong answer.
     pub answer: &'static str,
     /// The slip that leads there.
     pub slip: &'static str,
@@ -111,13 +111,13 @@ pub struct Wrong {
 pub struct Parameter {
     /// Its name on the command line, without the dashes.
     pub name: &'static str,
-    /// Its value where none is given.
+    /// The default value.
     pub default: Value,
-    /// What it is, with its domain.
+    /// The description, with the domain.
     pub help: &'static str,
     /// The values that it may have in a variant, short ones; none if it is not varied.
     pub variants: &'static [f64],
-    /// What it is called in formulas, if it is a number.
+    /// Its letter in formulas, if it is a number.
     pub letter: Option<Letter>,
 }
 
@@ -162,7 +162,7 @@ pub fn main_of(question: &'static Question, answer: AnswerFn) -> ExitCode {
         let asked = Asked::Questions(&questions);
         let Some(options) = Request::read(asked)?.options(asked)? else { return Ok(()) };
         let options = options.for_question(question);
-        // a parameter outside its domain is told before anything is run
+        // a parameter outside its domain is an error before anything is run
         question.at(&options)?;
         let all = || {
             sheet::answered(question, answer, &options, Voice::Full)?;
@@ -171,17 +171,16 @@ pub fn main_of(question: &'static Question, answer: AnswerFn) -> ExitCode {
             }
             Ok(())
         };
-        // a shard draws nothing
+        // a shard draws no figures
         if options.shard.is_some() { all() } else { options.with_out(all) }
     };
     ended(answered())
 }
 
-/// What an example beside the questions does.
+/// What an appendix's example does.
 pub type AppendixFn = fn(&Options) -> Result<Appendix>;
 
-/// The `main` of this example beside the questions: reads the command line, prints the tables and saves the
-/// figures.
+/// The `main` of an appendix's example: reads the command line, prints the tables and saves the figures.
 pub fn appendix(example: &str, appendix: AppendixFn) -> ExitCode {
     ended(appendix::beside(example).and_then(|beside| {
         let asked = Asked::Beside(beside);
@@ -190,9 +189,9 @@ pub fn appendix(example: &str, appendix: AppendixFn) -> ExitCode {
     }))
 }
 
-/// A worksheet: questions, of this crate or of one's own, each with the answer to it.
+/// A worksheet: questions of this crate or your own, each with the function that answers it.
 ///
-/// `examples/own_worksheet.rs` is one of another course.
+/// `examples/own_worksheet.rs` is a worksheet for another course.
 ///
 /// ```no_run
 /// use unbiased::workbook::{Sheet, Worksheet, question};
@@ -218,12 +217,12 @@ pub struct Worksheet {
     title: String,
     asked: Vec<(&'static Question, AnswerFn)>,
     beside: Vec<(&'static str, AppendixFn)>,
-    /// Numbers in place of the questions' own.
+    /// Parameters that differ from the questions' defaults.
     given: Vec<(&'static Question, &'static str, &'static str)>,
 }
 
 impl Worksheet {
-    /// One without questions.
+    /// A worksheet without questions.
     pub fn new(title: &str) -> Self {
         Self { title: title.into(), asked: Vec::new(), beside: Vec::new(), given: Vec::new() }
     }
@@ -234,7 +233,7 @@ impl Worksheet {
         self
     }
 
-    /// Adds a question with other numbers than its own, by name.
+    /// Adds a question with other values of its parameters, given by name.
     pub fn question_at(
         mut self,
         question: &'static Question,
@@ -245,16 +244,16 @@ impl Worksheet {
         self.question(question, answer)
     }
 
-    /// Adds an example beside the questions.
+    /// Adds an appendix.
     pub fn beside(mut self, example: &'static str, appendix: AppendixFn) -> Self {
         self.beside.push((example, appendix));
         self
     }
 
     /// The worksheet's `main`: reads the command line, answers all questions, and writes `solution.html`,
-    /// with what stands beside them as pages of their own, or `student.html`, or both.
+    /// with the appendices as separate pages, or `student.html`, or both.
     ///
-    /// Under `--seconds` what stands beside has at most a tenth of a second for each of its many estimators.
+    /// With `--seconds`, each of the many estimators in an appendix gets at most a tenth of a second.
     pub fn run(self) -> ExitCode {
         ended(self.pages())
     }
@@ -287,7 +286,7 @@ impl Worksheet {
     }
 }
 
-/// The pages, and the key with the appendices' pages.
+/// Writes the pages of one worksheet, and the appendices' pages with the key.
 fn one_worksheet(
     asked: &[(&'static Question, AnswerFn)],
     appendices: &[(&'static str, AppendixFn)],
@@ -314,7 +313,7 @@ fn one_worksheet(
         for (example, appendix) in appendices {
             print::title(example, "", options)?;
             let appendix = within_reason(appendix::beside(example)?, *appendix, options)?;
-            // their numbers for programs are what their own examples give
+            // no JSON: the appendices' own examples print their numbers for programs
             print::appendix(&appendix, options.verbose && !options.json, options)?;
             pages.push((format!("{example}.html"), page::beside(&appendix)));
             beside.push(appendix);
@@ -359,7 +358,7 @@ fn one_for_each(file: &Path, asked: &[(&'static Question, AnswerFn)], options: &
     print::line(&format!("The key of all: {}", path.display()))
 }
 
-/// What the student's edition has of a question beside the solution: its figures, which are saved.
+/// The question in the student's edition, if both editions are made: its figures are saved.
 fn for_students(question: &'static Question, answer: AnswerFn, options: &Options) -> Result<Vec<Answer>> {
     let mut options = options.clone();
     options.edition = Edition::Student;
@@ -367,8 +366,8 @@ fn for_students(question: &'static Question, answer: AnswerFn, options: &Options
     sheet::answered(question, answer, &options, Voice::Brief)
 }
 
-/// An appendix in the time that it may take beside the questions; its text says so where that is less than
-/// what is asked for.
+/// An appendix in the time that it may take as part of the worksheet. Its text says so if that is less than
+/// asked for.
 fn within_reason(beside: &Beside, appendix: AppendixFn, options: &Options) -> Result<Appendix> {
     match options.budget {
         Some(Budget::Time(time)) if time > MOST_TIME_BESIDE && beside.seconds.is_some() => {
@@ -387,10 +386,11 @@ fn within_reason(beside: &Beside, appendix: AppendixFn, options: &Options) -> Re
     }
 }
 
-/// For each estimator of an appendix, of which there may be a hundred.
+/// The most time for each estimator of an appendix, of which there may be a hundred.
 const MOST_TIME_BESIDE: Duration = Duration::from_millis(100);
 
-/// 0 for success, 2 for bad arguments, 1 for a failed run; the reason on standard error, in one sentence.
+/// The exit code: 0 for success, 2 for bad arguments, 1 for a failed run, with the reason on standard error
+/// in one sentence.
 fn ended(result: Result<()>) -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -23,35 +23,35 @@ use crate::run::{Budget, Outcome, Run};
 /// The options of an example.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// When an estimator's run is over, instead of after each question's own number of draws.
+    /// When an estimator's run ends; `None` is each question's own number of draws.
     pub budget: Option<Budget>,
-    /// The seed of every random number; 1 if none is given.
+    /// The seed of all random numbers; 1 by default.
     pub seed: u64,
-    /// Threads to run on; one a core if none is given. For the same draws the results are the same.
+    /// The number of threads; one per core by default. It does not change the results of the same draws.
     pub threads: Option<usize>,
-    /// Where figures and pages go; `worksheet/` if none is given.
+    /// The folder for figures and pages; `worksheet/` by default.
     pub out: PathBuf,
-    /// One JSON object a line instead of text.
+    /// Print one JSON object per line instead of text.
     pub json: bool,
-    /// What every row took, too, and all rows of a worksheet.
+    /// Print what every row took, and all rows of a worksheet.
     pub verbose: bool,
-    /// For whom.
+    /// The student's edition or the solution.
     pub edition: Edition,
-    /// Whether the student's edition is made beside the solution.
+    /// Whether the other edition is made, too.
     pub(super) both: bool,
-    /// Which shard of every run, and of how many. A shard needs no figures.
+    /// The shard of every run to draw, and the number of shards. A shard makes no figures.
     pub shard: Option<[u64; 2]>,
     /// Whether every figure is made as a slide, too.
     pub slides: bool,
-    /// The file of names that each get a worksheet of their own.
+    /// A file of names, each of which gets its own worksheet.
     pub(super) variants: Option<PathBuf>,
-    /// Nothing is printed but where things are.
+    /// Print only where files are.
     pub(super) quiet: bool,
-    /// Of the worksheet.
+    /// The worksheet's title.
     pub(super) title: String,
-    /// Of a question's figures the first alone is made: the one that a key has on paper.
+    /// Make only the first figure of each question: the one that a key has on paper.
     pub(super) one_figure: bool,
-    /// The shards of which every run is put together instead.
+    /// The shards from which every run is merged, instead of drawing it.
     pub(super) shards: Option<Rc<Shards>>,
     given: Vec<Given>,
     question: Option<&'static Question>,
@@ -84,7 +84,7 @@ impl Default for Options {
 /// A question's own option, as given.
 #[derive(Debug, Clone)]
 struct Given {
-    /// The question, if the option names it: `--5.2.p-rr`. Else it is that of every question that has it.
+    /// The question, if the option names it, as `--5.2.p-rr` does; else it is for every question that has it.
     of: Option<String>,
     name: &'static str,
     value: Value,
@@ -93,9 +93,9 @@ struct Given {
 /// Whose command line it is.
 #[derive(Clone, Copy)]
 pub(super) enum Asked<'q> {
-    /// That of these questions, one or all.
+    /// Of these questions' example, or of the worksheet.
     Questions(&'q [&'static Question]),
-    /// That of an example beside them.
+    /// Of an appendix's example.
     Beside(&'static Beside),
 }
 
@@ -107,7 +107,7 @@ pub(super) enum Request {
 }
 
 impl Request {
-    /// The options of a run; help and hints are printed at once.
+    /// The options of a run; help and hints are printed here.
     pub fn options(self, asked: Asked<'_>) -> Result<Option<Options>> {
         match (self, asked) {
             (Self::Run(options), _) => Ok(Some(options)),
@@ -119,7 +119,7 @@ impl Request {
         }
     }
 
-    /// Reads this program's command line, with the questions' own options beside the common ones.
+    /// Reads this program's command line, with the questions' own options and the common ones.
     pub fn read(asked: Asked<'_>) -> Result<Self> {
         Self::parse(Parser::from_env(), asked)
     }
@@ -170,9 +170,7 @@ impl Request {
             }
         }
         if options.variants.is_some() && questions.len() == 1 {
-            return Err(Error::Usage(
-                "--variants makes worksheets: it goes with the example worksheet".into(),
-            ));
+            return Err(Error::Usage("--variants works with the example worksheet only".into()));
         }
         if let Some(name) = variant {
             options = options.variant(&name, questions.iter().copied())?;
@@ -182,13 +180,17 @@ impl Request {
         }
         let cut = options.shard.is_some();
         if cut && options.shards.is_some() {
-            return Err(Error::Usage("--shard makes a part and --merge the whole: give one of them".into()));
+            return Err(Error::Usage("--shard and --merge cannot be combined: give one of them".into()));
         } else if (cut || options.shards.is_some()) && questions.len() != 1 {
-            return Err(Error::Usage("--shard and --merge go with the example of one question".into()));
+            return Err(Error::Usage(
+                "--shard and --merge work with the example of one question only".into(),
+            ));
         } else if cut && !options.json {
-            return Err(Error::Usage("--shard prints what --merge reads: it goes with --json".into()));
+            return Err(Error::Usage("--shard needs --json, which --merge reads".into()));
         } else if cut && !matches!(options.budget, None | Some(Budget::Draws(_))) {
-            return Err(Error::Usage("--shard goes with --draws: only their number can be cut".into()));
+            return Err(Error::Usage(
+                "--shard excludes --error and --seconds: only a number of draws can be divided".into(),
+            ));
         }
         Ok(Self::Run(options))
     }
@@ -214,14 +216,14 @@ impl Parameter {
     }
 }
 
-/// Reads the value of --draws, --error or --seconds, of which there may be one.
+/// Reads the value of --draws, --error or --seconds, of which only one may be given.
 pub(super) fn read_budget(line: &mut Parser, name: &str, budget: &mut Option<Budget>) -> Result<()> {
     let read = match name {
         "draws" => Budget::Draws(count(line, "--draws")?),
         "error" => Budget::StdError(positive(line, "--error")?),
         _ => Budget::Time(seconds(line)?),
     };
-    // of the same option the last one counts, as of any other
+    // if the same option is given again, the last one counts, as for all options
     if budget.is_some_and(|given| mem::discriminant(&given) != mem::discriminant(&read)) {
         return Err(Error::Usage("--draws, --error and --seconds each end a run: give one of them".into()));
     }
@@ -229,7 +231,7 @@ pub(super) fn read_budget(line: &mut Parser, name: &str, budget: &mut Option<Bud
     Ok(())
 }
 
-/// A command line that was not understood.
+/// The error for a command line that was not understood.
 pub(super) fn usage(error: lexopt::Error) -> Error {
     Error::Usage(error.to_string())
 }
@@ -269,7 +271,7 @@ fn number_above_zero(given: &str, name: &str) -> Result<f64> {
     number.ok_or_else(|| Error::Usage(format!("{name} takes a positive number, not \"{given}\"")))
 }
 
-/// A time that a clock can tell from none, and count up to.
+/// A time that a clock can measure and a `Duration` can hold.
 fn seconds(line: &mut Parser) -> Result<Duration> {
     let given = text(line, "--seconds")?;
     let seconds = number_above_zero(&given, "--seconds")?;
@@ -285,7 +287,7 @@ fn shard(given: &str) -> Result<[u64; 2]> {
         .ok_or_else(|| Error::Usage(format!("--shard takes one of 1/N to N/N, not \"{given}\"")))
 }
 
-/// The edition, and whether the other one is made, too.
+/// The edition, and whether both are made.
 fn edition(name: &str) -> Result<(Edition, bool)> {
     match name.to_lowercase().as_str() {
         "student" => Ok((Edition::Student, false)),
@@ -312,26 +314,26 @@ impl Options {
         Ok(())
     }
 
-    /// Takes what other options set, below what is set here.
+    /// Adds other options with lower priority: what is set here takes precedence.
     pub(super) fn put_below(&mut self, mut below: Self) {
         below.given.append(&mut self.given);
         self.given = below.given;
     }
 
-    /// The same for this question alone.
+    /// The same options, but for this question alone.
     pub(super) fn for_alone(self, question: &Question) -> Self {
         let mut alone = Self::default();
         alone.take_for(question, self);
         alone
     }
 
-    /// Takes what other options set, for this question alone.
+    /// Adds other options, for this question alone.
     pub(super) fn take_for(&mut self, question: &Question, options: Self) {
         let of = |given| Given { of: Some(question.id.to_owned()), ..given };
         self.given.extend(options.given.into_iter().map(of));
     }
 
-    /// The value of the question's own option `name`: as given, or its default.
+    /// The value of the question's own option `name`: as given, else its default.
     fn value(&self, name: &str) -> Option<Value> {
         let id = self.question.map(|question| question.id);
         let own = |given: &&Given| given.name == name && given.of.as_deref().is_none_or(|of| Some(of) == id);
@@ -347,8 +349,8 @@ impl Options {
         parameters.filter_map(|parameter| Some((parameter.name, self.value(parameter.name)?)))
     }
 
-    /// The number of the question's own option `name`: as given, or its default. NaN if the question has no
-    /// such option.
+    /// The value of the question's own option `name`, a number: as given, else its default. NaN if the
+    /// question has no such option.
     pub fn number(&self, name: &str) -> f64 {
         match self.value(name) {
             Some(Value::Number(number)) => number,
@@ -356,7 +358,7 @@ impl Options {
         }
     }
 
-    /// The same of an option that is a count or "all", which is None. None, too, if the question has no such
+    /// The value of an option that is a count, or `None` for "all". `None`, too, if the question has no such
     /// option.
     pub fn limit(&self, name: &str) -> Option<u32> {
         match self.value(name) {
@@ -365,7 +367,7 @@ impl Options {
         }
     }
 
-    /// The same of an option that is a point. NaN if the question has no such option.
+    /// The value of an option that is a point. NaN if the question has no such option.
     pub fn point(&self, name: &str) -> [f64; 3] {
         match self.value(name) {
             Some(Value::Point(point)) => point,
@@ -385,7 +387,7 @@ impl Options {
         }
     }
 
-    /// The number of an option where only a whole one ≥ 0 will do.
+    /// The value of an option that must be a whole number ≥ 0.
     ///
     /// # Errors
     /// If it is anything else.
@@ -398,9 +400,9 @@ impl Options {
         }
     }
 
-    /// Runs an estimator until the budget that the options name is spent, `draws` times where they name none,
-    /// with a progress bar on a terminal. An error that is out of reach of five seconds' draws is not
-    /// reached: the row says so.
+    /// Runs an estimator until the budget in the options is spent, or for `draws` draws if there is none,
+    /// with a progress bar on a terminal. If an error is asked for that takes more than five seconds of
+    /// draws, the run is cut short, and the row says so.
     ///
     /// # Errors
     /// Those of [`Run::estimate`].
@@ -424,8 +426,8 @@ impl Options {
         })
     }
 
-    /// Does what needs the folder for figures and pages: the folder is made first, before anything is
-    /// computed for it, and goes away again if nothing came of it.
+    /// Makes the folder for figures and pages before `work` starts, and removes it if it is still empty
+    /// afterwards.
     pub(super) fn with_out(&self, work: impl FnOnce() -> Result<()>) -> Result<()> {
         let was_there = self.out.exists();
         std::fs::create_dir_all(&self.out).map_err(|error| Error::Write {
@@ -434,21 +436,21 @@ impl Options {
         })?;
         work().inspect_err(|_| {
             if !was_there {
-                // fails, as it should, if there is something in it
+                // fails, as it should, if the folder is not empty
                 let _ = std::fs::remove_dir(&self.out);
             }
         })
     }
 
-    /// The names of those parameters that some row has otherwise than the question's options: the others
-    /// stand in the command that repeats the answer.
+    /// The names of the parameters that differ between rows from the question's options; the others can be
+    /// given in the command that repeats the answer.
     pub(super) fn varied<'a>(&self, answers: impl IntoIterator<Item = &'a Answer>) -> Vec<Cow<'static, str>> {
         let parameters = answers.into_iter().flat_map(Answer::parameters);
         let as_given = |name: &str, value: Value| self.value(&name.replace('_', "-")) == Some(value);
         parameters.filter(|(name, value)| !as_given(name, *value)).map(|(name, _)| name.clone()).collect()
     }
 
-    /// The question's own options that are not at their defaults: `u = 0.3`.
+    /// The question's own options that differ from their defaults: `u = 0.3`.
     pub(super) fn own(&self, question: &Question) -> String {
         let changed = question.parameters.iter().filter_map(|parameter| {
             let value = self.value(parameter.name)?;
@@ -457,7 +459,7 @@ impl Options {
         changed.collect::<Vec<_>>().join(", ")
     }
 
-    /// The command that repeats these answers, and a remark where no single one does.
+    /// The command that repeats these answers, and a remark if no single command does.
     pub(super) fn command<'a>(
         &self,
         question: &Question,
@@ -476,7 +478,7 @@ impl Options {
             Some(Budget::StdError(error) | Budget::RelativeError(error)) if !cut_short => {
                 format!(" --error {}", parseable(error))
             }
-            // the clock decided how many draws there are, and will decide otherwise next time
+            // the clock decided the number of draws, and may decide otherwise next time
             Some(_) => {
                 let draws = answers.filter_map(Answer::estimate).map(|estimate| estimate.draws());
                 let draws: Vec<u64> = draws.collect::<BTreeSet<_>>().into_iter().collect();
@@ -485,8 +487,8 @@ impl Options {
                     [draws] => format!(" --draws {draws}"),
                     _ => {
                         remark = Some(
-                            "where N is the number of draws of the row to be repeated: the clock gave each \
-                             its own",
+                            "where N is the number of draws of the row to be repeated: the clock ended \
+                             each row after a different number",
                         );
                         " --draws N".into()
                     }
@@ -497,5 +499,5 @@ impl Options {
     }
 }
 
-/// What a row may take where an error is asked for, the pilot's first draws apart.
+/// The most time for a row for which an error is asked, without the pilot run.
 const MOST_TIME: Duration = Duration::from_secs(5);

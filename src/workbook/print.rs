@@ -15,10 +15,10 @@ use crate::numbers::{plus_minus, rounded, shortened, std_errors};
 use crate::plot::{Edition, Figure};
 use crate::run::Part;
 
-/// Prints the question, before anything is known of its rows.
+/// Prints the question, before its rows are computed.
 pub(super) fn heading(question: &'static Question, options: &Options, voice: Voice) -> Result<()> {
     let stated = question.at(options)?;
-    if unsaid(options) {
+    if silent(options) {
         return Ok(());
     }
     if voice == Voice::Brief {
@@ -37,21 +37,21 @@ pub(super) fn heading(question: &'static Question, options: &Options, voice: Voi
     put(&text)
 }
 
-/// What is being done, in a line.
+/// Prints the question's number and title on one line.
 pub(super) fn title(id: &str, title: &str, options: &Options) -> Result<()> {
-    if unsaid(options) { Ok(()) } else { put(&format!("{}\n", format!("{id}  {title}").trim_end())) }
+    if silent(options) { Ok(()) } else { put(&format!("{}\n", format!("{id}  {title}").trim_end())) }
 }
 
 /// Prints a row.
 pub(super) fn row(answer: &Answer, options: &Options) -> Result<()> {
     let empty = answer.exact().is_none() && answer.found().is_none() && answer.sentence().is_none();
-    if unsaid(options) || options.edition == Edition::Student || empty {
+    if silent(options) || options.edition == Edition::Student || empty {
         return Ok(());
     }
     put(&format!("\n{}", solution(answer, options)))
 }
 
-/// Saves the figures, and prints what follows the rows; for programs, the rows.
+/// Saves the figures, and prints what follows the rows. With --json, prints the rows.
 pub(super) fn ending(
     question: &'static Question,
     answers: &[Answer],
@@ -119,9 +119,9 @@ fn figure_line(path: &Path) -> String {
     format!("    figure       {}\n", path.display())
 }
 
-/// The worksheet in a line a question, once all of it is done.
+/// Prints one line per question, once the whole worksheet is done.
 pub(super) fn summary(answered: &[(&Question, Vec<Answer>)], options: &Options) -> Result<()> {
-    if unsaid(options) || options.edition == Edition::Student {
+    if silent(options) || options.edition == Edition::Student {
         return Ok(());
     }
     let mut text = String::from("\n       right rows   largest |z|   seconds   besides\n");
@@ -158,7 +158,7 @@ fn besides(rows: &[Answer]) -> String {
     counts.iter().map(|(word, count)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
 }
 
-/// Saves an appendix's figures, and prints it unless it is not `wanted`.
+/// Saves an appendix's figures, and prints it if it is `wanted`.
 pub(super) fn appendix(appendix: &Appendix, wanted: bool, options: &Options) -> Result<()> {
     let paths = save(&appendix.figures, options)?;
     if !wanted {
@@ -166,7 +166,7 @@ pub(super) fn appendix(appendix: &Appendix, wanted: bool, options: &Options) -> 
     }
     if options.json {
         let print = |(index, record)| {
-            // the figures belong to all of it, and are named once
+            // the figures belong to the whole appendix, and are listed once
             let figures = if index == 0 { &paths[..] } else { &[] };
             writeln!(io::stdout(), "{}", serde_json::to_string(&Row::of(record, figures))?)
         };
@@ -188,22 +188,22 @@ fn svgs(paths: &[PathBuf]) -> impl Iterator<Item = &PathBuf> {
     paths.iter().filter(|path| path.extension().is_some_and(|ending| ending == "svg"))
 }
 
-/// A last line of the worksheet: where a page is.
+/// Prints where a page is.
 pub(super) fn page(path: &Path, options: &Options) -> Result<()> {
-    if unsaid(options) { Ok(()) } else { put(&format!("\nPage: {}\n", path.display())) }
+    if silent(options) { Ok(()) } else { put(&format!("\nPage: {}\n", path.display())) }
 }
 
-/// A line for people.
+/// Prints a line of text.
 pub(super) fn line(text: &str) -> Result<()> {
     put(&format!("{text}\n"))
 }
 
-/// Whether nothing is said to people.
-fn unsaid(options: &Options) -> bool {
+/// Whether no text for people is printed.
+fn silent(options: &Options) -> bool {
     options.json || options.quiet
 }
 
-/// A reader that has seen enough is no error; a full disk is.
+/// A closed pipe is no error, as the reader has seen enough; a full disk is one.
 pub(super) fn until_the_pipe_closes(error: io::Error) -> Result<()> {
     match error.kind() {
         io::ErrorKind::BrokenPipe => Ok(()),
@@ -247,8 +247,8 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Nothing of the answer, and a name that does not tell it.
-    fn untold(self, stated: &'a Stated) -> Self {
+    /// The row without the answer, and with a title that does not give it away.
+    fn without_answer(self, stated: &'a Stated) -> Self {
         Self {
             what: &stated.title,
             truth: None,
@@ -264,7 +264,7 @@ impl<'a> Row<'a> {
 
 fn json(stated: &Stated, answer: &Answer, figures: &[PathBuf], options: &Options) -> io::Result<()> {
     let row = Row::of(answer, figures);
-    let row = if options.edition == Edition::Solution { row } else { row.untold(stated) };
+    let row = if options.edition == Edition::Solution { row } else { row.without_answer(stated) };
     writeln!(io::stdout(), "{}", serde_json::to_string(&row)?)
 }
 
@@ -327,7 +327,7 @@ fn cost(answer: &Answer) -> String {
     text + &format!(", {:.3} s", answer.seconds().unwrap_or_default())
 }
 
-/// What a row says that did not reach the error asked for.
+/// The remark for a row that did not reach the error asked for.
 pub(super) fn cut_short(answer: &Answer) -> Option<String> {
     let (shortfall, reached) = (answer.shortfall()?, answer.estimate()?.std_error()?);
     Some(format!(
@@ -350,7 +350,7 @@ fn paragraph(text: &str) -> String {
     labelled("    ", text, width())
 }
 
-/// Writes to standard output, at once.
+/// Writes to standard output and flushes.
 fn put(text: &str) -> Result<()> {
     let mut out = io::stdout().lock();
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).or_else(until_the_pipe_closes)
@@ -364,7 +364,7 @@ pub(super) fn hints(questions: &[&'static Question], options: &Options) -> Resul
     put(&questions.iter().map(hint).collect::<Result<String>>()?)
 }
 
-/// Help in lines that fit; what an option does stands in a column of its own.
+/// Folds the help to the width of the terminal; descriptions are in a column of their own.
 fn options_folded(text: &str) -> String {
     let lines = text.lines().map(|line| match line.char_indices().nth(OPTION) {
         Some((at, _)) if line.starts_with("    --") => {
@@ -379,7 +379,7 @@ fn options_folded(text: &str) -> String {
 /// The width of the column of options in the help.
 const OPTION: usize = 25;
 
-/// `--help` of an example beside the questions
+/// `--help` of an appendix's example
 pub(super) fn help_beside(beside: &Beside) -> Result<()> {
     let mut text = format!("{}\n\nOptions\n", beside.about);
     if let Some(seconds) = beside.seconds {
@@ -400,8 +400,8 @@ pub(super) fn help(questions: &[&'static Question]) -> Result<()> {
         let stated = question.at(&Options::default())?;
         text += &format!("{}  {}\n\n{}\n\n", question.id, stated.title, stated.statement);
     } else {
-        text += "The worksheet: every question in closed form, by an estimator with its error bar, and in a \
-                 picture.\n\n";
+        text += "The worksheet: every question answered in closed form, by an estimator with its error \
+                 bar, and by a figure.\n\n";
     }
     text += "Options
     --draws N            draws of every estimator (default: each question's own number)
@@ -418,11 +418,11 @@ pub(super) fn help(questions: &[&'static Question]) -> Result<()> {
     --json               one JSON object a line
     --verbose            what every row took: draws, random numbers, evaluations, seconds
     --edition NAME       student, solution or both (solution)
-    --variant NAME       numbers of a variant's own: any text names one
+    --variant NAME       the numbers of this variant; any text is a name
     --variants FILE      a worksheet for each name in a file, one a line, and one key (with worksheet)
     --shard K/N          only shard K of N of every run, for --merge (with --json)
     --merge FILE...      puts every run together from what its shards printed
-    --hint               a nudge that does not tell the answer
+    --hint               a hint that does not give the answer away
 ";
     for question in questions {
         for parameter in question.parameters {

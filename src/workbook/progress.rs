@@ -8,8 +8,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::run::Progress;
 
-/// Does work that reports how many draws are done, and how many there will be: from the second second on, a
-/// bar shows them on a terminal. Work that has a `time` of its own has a bar of time.
+/// Does work that reports how many draws are done, and how many there will be. After one second, a bar shows
+/// them on a terminal. With a `time`, the bar shows that instead.
 pub(super) fn watched<T>(wanted: bool, time: Option<Duration>, work: impl FnOnce(&Progress<'_>) -> T) -> T {
     let start = Instant::now();
     let bar = OnceCell::new();

@@ -1,4 +1,4 @@
-//! An example's rows put together from those of its shards.
+//! An example's rows, merged from those of its shards.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -11,7 +11,7 @@ use super::answer::parameters_of;
 use crate::error::{Error, Result};
 use crate::run::{Outcome, Part, merge};
 
-/// What `--shard K/N --json` prints, as far as it is needed.
+/// A row that `--shard K/N --json` prints, as far as it is needed here.
 #[derive(Deserialize)]
 struct Row {
     #[serde(flatten)]
@@ -19,7 +19,7 @@ struct Row {
     part: Part,
 }
 
-/// What a row is of.
+/// What a row is about.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 struct Name {
     question: String,
@@ -27,7 +27,7 @@ struct Name {
     parameters: serde_json::Map<String, serde_json::Value>,
 }
 
-/// The whole runs of all rows, in the order in which an example makes them.
+/// The merged runs of all rows, in the order in which the example makes them.
 #[derive(Debug)]
 pub(super) struct Shards {
     names: Vec<Name>,
@@ -35,7 +35,7 @@ pub(super) struct Shards {
 }
 
 impl Shards {
-    /// Reads what each shard has printed into a file.
+    /// Reads the files with what each shard has printed.
     pub fn read(paths: &[PathBuf]) -> Result<Self> {
         let mut files = Vec::new();
         for path in paths {
@@ -77,7 +77,7 @@ impl Shards {
         next.ok_or_else(|| Error::Parts { reason: "they have fewer rows than this example".into() })
     }
 
-    /// Whether these answers are the shards' own: in the same order, with the same parameters.
+    /// Checks that the shards belong to these answers: same order, same parameters.
     pub fn belong_to(&self, answers: &[Answer]) -> Result<()> {
         let mut names = self.names.iter().peekable();
         for answer in answers {

@@ -12,36 +12,36 @@ use crate::paths::room::Scene;
 use crate::plot::{Edition, Figure};
 use crate::stream::{Stream, mix};
 
-/// A question's sheet. It knows the question, its parameters, the seed and the number of draws; an example
-/// adds rows to it.
+/// A question's sheet. It knows the question, its parameters, the seed and the number of draws, and an
+/// example adds rows to it.
 ///
-/// In the student's edition nothing is run: rows are titles alone, and only figures to draw in are made.
+/// In the student's edition nothing is run: rows have titles only, and only figures to draw in are made.
 pub struct Sheet {
     question: &'static Question,
     options: Options,
     voice: Voice,
     rows: RefCell<Vec<Answer>>,
-    /// How many of the rows are printed; none before the question is.
-    told: Cell<Option<usize>>,
+    /// How many rows are printed; `None` before the question is.
+    printed: Cell<Option<usize>>,
 }
 
 /// What is printed while a question is answered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Voice {
-    /// Its title alone.
+    /// Only its title.
     Brief,
-    /// The question, then every row as it is done.
+    /// The question, then every row when it is done.
     Full,
 }
 
-/// Draws of a row that asks for no other number.
+/// The draws of a row that asks for no other number.
 const DRAWS: u64 = 1_000_000;
 
-/// Random numbers, or evaluations where they are more, that a row takes at most unless the command line asks
+/// The most random numbers, or evaluations if those are more, that a row takes unless the command line asks
 /// for draws: some ten seconds of them.
 const MOST_WORK: f64 = 1e9;
 
-/// The same for a single draw, which nothing can cut short.
+/// The same for a single draw, which cannot be cut short.
 const MOST_WORK_A_DRAW: f64 = 1e7;
 
 /// Answers a question, prints it and saves its figures.
@@ -52,15 +52,15 @@ pub(super) fn answered(
     voice: Voice,
 ) -> Result<Vec<Answer>> {
     let options = options.for_question(question);
-    let sheet = Sheet { question, options, voice, rows: RefCell::default(), told: Cell::new(None) };
+    let sheet = Sheet { question, options, voice, rows: RefCell::default(), printed: Cell::new(None) };
     if voice == Voice::Brief {
-        sheet.tell(0)?;
+        sheet.print_first(0)?;
     }
     answer(&sheet)?;
     if let Some(shards) = sheet.options.shards.as_deref() {
         shards.belong_to(&sheet.rows.borrow())?;
     }
-    sheet.tell(usize::MAX)?;
+    sheet.print_first(usize::MAX)?;
     let rows = sheet.rows.into_inner();
     print::ending(question, &rows, &sheet.options, voice)?;
     Ok(rows)
@@ -72,7 +72,7 @@ impl Sheet {
         self.options.number(name)
     }
 
-    /// The question's own number `name`, where only a whole one ≥ 0 will do.
+    /// The question's own number `name`, which must be a whole number ≥ 0.
     ///
     /// # Errors
     /// If it is anything else.
@@ -80,7 +80,7 @@ impl Sheet {
         self.options.whole_number(name)
     }
 
-    /// The question's own count `name`; None for "all".
+    /// The question's own count `name`; `None` for "all".
     pub fn limit(&self, name: &str) -> Option<u32> {
         self.options.limit(name)
     }
@@ -95,7 +95,7 @@ impl Sheet {
         self.options.seed
     }
 
-    /// Adds a row about `what`, which does not tell the answer. Its parameters are the question's own.
+    /// Adds a row about `what`, which must not give the answer away. Its parameters are the question's own.
     pub fn row(&self, what: impl AsRef<str>) -> Row<'_> {
         let mut answer = Answer::new(self.question.id, what.as_ref());
         for (name, value) in self.options.parameters() {
@@ -114,7 +114,7 @@ impl Sheet {
         if self.options.edition == Edition::Solution { self.drawing(|_| make()) } else { Ok(()) }
     }
 
-    /// Adds a figure that students draw in, too, to the row before it.
+    /// Adds a figure that students also draw in to the last row.
     ///
     /// # Errors
     /// Those of making it.
@@ -122,7 +122,7 @@ impl Sheet {
         let drawn = |row: &Answer| row.figures(self.options.edition).next().is_some();
         let enough = self.options.one_figure && self.rows.borrow().iter().any(drawn);
         if self.options.shard.is_none() && !enough {
-            self.tell_all_but_the_last()?;
+            self.print_all_but_the_last()?;
             for figure in make(self.options.edition)?.into() {
                 self.change(self.last(), |answer| answer.figure(figure));
             }
@@ -140,25 +140,25 @@ impl Sheet {
         self.rows.borrow().len().saturating_sub(1)
     }
 
-    /// Prints the question, before all, and those of the first `done` rows that are not printed yet. Of
-    /// shards it is not known before the end whether they belong to these rows.
-    fn tell(&self, done: usize) -> Result<()> {
-        if self.told.get().is_none() {
+    /// Prints the question, if it is not printed yet, and those of the first `done` rows that are not. Merged
+    /// shards may turn out not to belong to these rows only at the end.
+    fn print_first(&self, done: usize) -> Result<()> {
+        if self.printed.get().is_none() {
             print::heading(self.question, &self.options, self.voice)?;
         }
-        let told = self.told.get().unwrap_or(0);
+        let printed = self.printed.get().unwrap_or(0);
         if self.voice == Voice::Full {
-            for answer in self.rows.borrow().iter().take(done).skip(told) {
+            for answer in self.rows.borrow().iter().take(done).skip(printed) {
                 print::row(answer, &self.options)?;
             }
         }
-        self.told.set(Some(done.max(told)));
+        self.printed.set(Some(done.max(printed)));
         Ok(())
     }
 
-    /// The same before the last row is worked on.
-    fn tell_all_but_the_last(&self) -> Result<()> {
-        if self.options.shards.is_some() { Ok(()) } else { self.tell(self.last()) }
+    /// Prints all rows but the last, which is still being worked on. Not for merged shards.
+    fn print_all_but_the_last(&self) -> Result<()> {
+        if self.options.shards.is_some() { Ok(()) } else { self.print_first(self.last()) }
     }
 }
 
@@ -168,12 +168,12 @@ impl From<Figure> for Vec<Figure> {
     }
 }
 
-/// A row of a [`Sheet`], to which its number, and what there is to say of it, is added.
+/// A row of a [`Sheet`], to which numbers and remarks are added.
 pub struct Row<'s> {
     sheet: &'s Sheet,
     index: usize,
     draws: u64,
-    /// Whether a draw of it takes too long for any number of them.
+    /// Whether even a few draws of it take too long.
     most_work: bool,
 }
 
@@ -183,17 +183,17 @@ impl Row<'_> {
         self
     }
 
-    /// It belongs to this part of the question: "(ii)".
+    /// The part of the question that it belongs to: "(ii)".
     pub fn part(self, part: &str) -> Self {
         self.set(|answer| answer.part_of_question(part))
     }
 
-    /// A parameter that it has otherwise than the question, or besides.
+    /// A parameter that differs from the question's, or is an additional one.
     pub fn parameter(self, name: &'static str, value: impl Into<Value>) -> Self {
         self.set(|answer| answer.parameter(name, value))
     }
 
-    /// The closed form's value; None where there is none.
+    /// The exact value; `None` if none is known.
     pub fn truth(self, truth: impl Into<Option<f64>>) -> Self {
         let truth = truth.into();
         self.set(|answer| match truth {
@@ -202,23 +202,23 @@ impl Row<'_> {
         })
     }
 
-    /// A value without an error bar, found numerically.
+    /// A value without an error bar, computed numerically.
     pub fn value(self, value: f64) -> Self {
         self.set(|answer| answer.value(value))
     }
 
-    /// A sentence: the answer itself where it is no number, or a word on this one.
+    /// A sentence: the answer itself if it is no number, or a remark on the number.
     pub fn note(self, note: impl Into<String>) -> Self {
         self.set(|answer| answer.note(note))
     }
 
-    /// It is a classic mistake, in a few words, and nothing that must agree with the truth.
+    /// Marks it as a classic mistake, described in a few words, that need not agree with the truth.
     pub fn wrong_on_purpose(self, why: impl Into<String>) -> Self {
         self.set(|answer| answer.not_judged(Words::WrongOnPurpose(why.into())))
     }
 
-    /// Where there is a reason to mistrust its error bar that the estimator does not know itself, it is not
-    /// judged by.
+    /// If there is a reason to doubt its error bar that the estimator itself does not know, the row is not
+    /// judged.
     pub fn doubt(self, doubt: Option<Doubt>) -> Self {
         match doubt {
             Some(doubt) => self.set(|answer| answer.not_judged(Words::Doubted(doubt))),
@@ -226,14 +226,14 @@ impl Row<'_> {
         }
     }
 
-    /// The number of draws, where the command line names none and a million will not do.
+    /// The number of draws, if it should not be a million when the command line names none.
     pub fn draws(mut self, draws: u64) -> Self {
         self.draws = draws;
         self
     }
 
-    /// A draw takes about so many random numbers: where these are too many, it is left out, and the row says
-    /// so.
+    /// The approximate number of random numbers per draw. If these are too many, the row is left out, and
+    /// says so.
     pub fn takes(mut self, numbers: f64) -> Self {
         self.most_work = numbers > MOST_WORK_A_DRAW;
         if !self.most_work {
@@ -243,7 +243,7 @@ impl Row<'_> {
         self.set(|answer| answer.note(note).not_judged(Words::LeftOut))
     }
 
-    /// Runs an estimator of it: for the draws, the time or the error that the command line names.
+    /// Runs an estimator for it: for the draws, the time or the error on the command line.
     ///
     /// # Errors
     /// Those of [`Run::estimate`](crate::Run::estimate).
@@ -251,12 +251,12 @@ impl Row<'_> {
         if self.sheet.options.edition == Edition::Student || self.most_work {
             return Ok(self);
         }
-        self.sheet.tell_all_but_the_last()?;
+        self.sheet.print_all_but_the_last()?;
         let (draws, cut) = match self.sheet.options.budget {
             None if self.sheet.options.shards.is_none() => within_reason(estimator, self.draws),
             _ => (self.draws, None),
         };
-        // the worksheets of a class take a minute so
+        // so that the worksheets of a class take a minute
         let draws = if self.sheet.options.one_figure { (draws / 8).max(2) } else { draws };
         let outcome = self.sheet.options.run(estimator, draws)?;
         let this = self.doubt(estimator.doubt());
@@ -267,8 +267,8 @@ impl Row<'_> {
     }
 }
 
-/// As many of these draws as take no more than [`MOST_WORK`], by what a few others take, and a word where
-/// that is fewer. It depends on no clock, so the same command gives the same draws.
+/// The number of draws, at most `draws`, that takes no more than [`MOST_WORK`], from the cost of a few trial
+/// draws; and a remark if it is smaller. It depends on no clock, so the same command gives the same draws.
 fn within_reason(estimator: &(impl Estimator + ?Sized), draws: u64) -> (u64, Option<String>) {
     let mut rng = Stream::new(mix(0x7768_6174_206f_6e65), 0);
     let mut tried = 0;

@@ -1,4 +1,4 @@
-//! A question's texts at its parameters.
+//! A question's texts with the values of its parameters.
 
 use super::grammar;
 use super::{Options, Question};
@@ -10,38 +10,35 @@ use crate::numbers::typeset;
 pub struct Letter {
     /// Its spellings, the worksheet's first.
     pub names: &'static [&'static str],
-    /// Its value at the question's parameters, with the domain that the question's own module gives them.
+    /// Its value at the question's parameters; an error if these are outside their domain.
     pub value: fn(&Options) -> Result<f64>,
-    /// Another value, at which formulas that are not the same do not agree.
+    /// A generic value, at which different formulas give different results.
     pub generic: f64,
 }
 
 /// A question's texts, with the values of its parameters in them; see [`Question`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stated {
-    /// A few words, which do not tell the answer.
+    /// A few words that do not give the answer away.
     pub title: String,
     /// What is asked.
     pub statement: String,
-    /// A nudge that does not tell the answer.
+    /// A hint that does not give the answer away.
     pub hint: String,
-    /// The closed form in a line of plain text.
+    /// The closed form in one line of plain text.
     pub formula: String,
-    /// The same in LaTeX, a displayed formula each.
+    /// The same in LaTeX, one displayed formula each.
     pub latex: Vec<String>,
-    /// Why it is so, in a paragraph.
+    /// The explanation, one paragraph.
     pub answer: String,
-    /// Classic wrong answers, each with the slip that leads there.
+    /// Classic wrong answers, each with its slip.
     pub wrong: Vec<(String, String)>,
-    /// Where the sheet as it was handed out needs correcting.
+    /// A correction to the sheet as it was handed out.
     pub on_the_original: Option<String>,
 }
 
 impl Question {
-    /// Its texts at its parameters, those that the options name in place of the sheet's.
-    ///
-    /// # Errors
-    /// If a parameter lies outside its domain; the question is named.
+    /// Its texts at its parameters, as given in the options, else the sheet's.
     ///
     /// ```
     /// use unbiased::workbook::{Options, question};
@@ -52,6 +49,9 @@ impl Question {
     /// assert_eq!(question.at(&options)?.formula, "E[N] = p_rr/(1 − p_rr) = 1.5");
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If a parameter is outside its domain; the message names the question.
     pub fn at(&'static self, options: &Options) -> Result<Stated> {
         let options = options.for_question(self);
         let named = |error| match error {
@@ -80,7 +80,7 @@ impl Question {
         own.chain(self.derived)
     }
 
-    /// What they stand for at the question's parameters.
+    /// The values of these letters at the question's parameters.
     pub(super) fn values(&self, options: &Options) -> Result<Vec<f64>> {
         self.letters().map(|letter| (letter.value)(options)).collect()
     }

@@ -1,15 +1,15 @@
-//! Text as wide as the terminal.
+//! Text folded to the width of the terminal.
 
 use super::Table;
 
-/// The columns of the terminal, or 79 where output goes elsewhere.
+/// The terminal's width in columns, or 79 if the output goes elsewhere.
 pub(super) fn width() -> usize {
     let columns = console::Term::stdout().size_checked().map(|(_, columns)| usize::from(columns));
     columns.unwrap_or(79).clamp(40, 110)
 }
 
-/// Text in lines of at most `width` characters, broken between words. What follows in a broken line stands
-/// under its first word, behind the number of a list.
+/// Text in lines of at most `width` characters, broken between words. Continuation lines are indented to the
+/// first word, after the number in a list.
 pub(super) fn folded(text: &str, width: usize) -> String {
     let lines = text.lines().map(|line| {
         let blank = line.chars().take_while(|c| *c == ' ').count();
@@ -38,12 +38,13 @@ pub(super) fn folded(text: &str, width: usize) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// Text behind a label, in lines of at most `width` characters; what follows stands under its first word.
+/// Text after a label, in lines of at most `width` characters; continuation lines are indented to the first
+/// word.
 pub(super) fn labelled(label: &str, text: &str, width: usize) -> String {
     let blank = label.chars().count();
     let folded = folded(text, width.saturating_sub(blank).max(20));
     let mut lines = String::new();
-    // a label has a line even where there is nothing to say
+    // a label is printed even without text
     for (index, line) in folded.split('\n').enumerate() {
         let before = if index == 0 { label.to_owned() } else { " ".repeat(blank) };
         lines += (before + line).trim_end();
@@ -52,10 +53,10 @@ pub(super) fn labelled(label: &str, text: &str, width: usize) -> String {
     lines
 }
 
-/// A command in lines of at most `width` characters that a shell puts together again.
+/// A command in lines of at most `width` characters, continued with backslashes.
 pub(super) fn command_lines(command: &str, width: usize) -> String {
     let (mut lines, mut line) = (String::new(), String::from("    "));
-    // an option stays with its value
+    // keep an option and its value on one line
     for (index, word) in command.split(" --").enumerate() {
         let word = if index == 0 { word.to_owned() } else { format!("--{word}") };
         let length = line.chars().count();
@@ -70,8 +71,8 @@ pub(super) fn command_lines(command: &str, width: usize) -> String {
     lines + &line + "\n"
 }
 
-/// A table in lines of at most `width` characters: columns that do not fit stand in further tables below,
-/// with the first column again, and those that are wider than all of it in lines of text.
+/// A table in lines of at most `width` characters. Columns that do not fit go into further tables below,
+/// which repeat the first column; columns wider than the page become lines of text.
 pub(super) fn stacked(table: &Table, width: usize) -> Vec<String> {
     let cell = |row: &[String], column: usize| row.get(column).cloned().unwrap_or_default();
     let length = |column: usize| {

@@ -1,4 +1,4 @@
-//! The value of an option, or of a parameter that a number was computed with.
+//! The value of an option, or of a parameter of a row.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use serde_json::json;
 
 use crate::numbers::{parseable, shortened};
 
-/// What an option holds. An option takes values of the kind of its default.
+/// The value of an option, always of the kind of its default.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Value {
     /// A number, given as `0.8` or `4/5`.
@@ -31,7 +31,7 @@ impl Value {
         }
     }
 
-    /// What a value of this kind is called.
+    /// The name of this kind of value.
     pub(super) fn kind(self) -> &'static str {
         match self {
             Self::Number(_) => "a number",
@@ -40,7 +40,7 @@ impl Value {
         }
     }
 
-    /// The stand-in for it in the list of options.
+    /// The placeholder for it in the list of options.
     pub(super) fn placeholder(self) -> &'static str {
         match self {
             Self::Number(_) => "X",
@@ -57,7 +57,7 @@ impl Value {
         }
     }
 
-    /// For people: numbers to a few digits.
+    /// Short text for people: numbers to a few digits.
     pub(super) fn shortened(self) -> String {
         match self {
             Self::Number(number) => shortened(number),
@@ -67,7 +67,7 @@ impl Value {
     }
 }
 
-/// As the command line takes it.
+/// The form that the command line takes.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

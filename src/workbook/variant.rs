@@ -1,26 +1,23 @@
-//! Numbers of each student's own: a name, any text, chooses the parameters of every question, the same on
-//! every machine.
+//! Variants, which give each student numbers of their own: a name, which is any text, determines the
+//! parameters of every question, the same on every machine.
 //!
-//! A variant is fair. Its numbers are short; none hides a mistake (λ = 1, p_rr = ½, a square, L_i = 1); and
-//! every wrong answer is at least 5 % off the right one, and every classic wrong answer at least 5 % off
-//! every other.
+//! A variant is fair: its numbers are short; none hides a mistake (λ = 1, p_rr = ½, a square, L_i = 1); every
+//! wrong answer differs by at least 5 % from the right one, and every classic wrong answer by at least 5 %
+//! from every other one.
 
 use super::options::Options;
 use super::{Number, Question};
 use crate::error::{Error, Result};
 use crate::stream::mix;
 
-/// Tries until one is fair; it takes a few.
+/// The most tries to find a fair variant; a few are enough.
 const TRIES: u64 = 10_000;
 
-/// What two answers differ by at least, relatively.
+/// The smallest relative difference of two answers.
 const APART: f64 = 0.05;
 
 impl Options {
-    /// The parameters of a variant for these questions, and what is set already on top of them.
-    ///
-    /// # Errors
-    /// If the name is empty.
+    /// The parameters of a variant for these questions; options that are already set take precedence.
     ///
     /// ```
     /// use unbiased::workbook::{Options, question, questions};
@@ -31,6 +28,9 @@ impl Options {
     /// assert_eq!(question.at(&ada)?, question.at(&Options::default().variant("Ada", questions())?)?);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If the name is empty.
     pub fn variant(
         mut self,
         name: &str,
@@ -61,7 +61,7 @@ impl Options {
             let mut word = mix(seed ^ mix(attempt));
             for parameter in &free {
                 word = mix(word);
-                // fewer than 20 of 2⁶⁴: as good as uniform
+                // the remainder's bias is below 20/2⁶⁴, which is negligible
                 let place = (word % parameter.variants.len() as u64) as usize;
                 let value = parameter.variants.get(place).copied().unwrap_or(f64::NAN);
                 options.set(question, parameter.name, &value.to_string())?;
@@ -75,7 +75,7 @@ impl Options {
     }
 }
 
-/// Whether no answer to the question is taken for another, and all of its texts can be written.
+/// Whether no answer to the question can be taken for another, and all of its texts can be written.
 pub(super) fn is_fair(question: &'static Question, options: &Options) -> bool {
     question.at(options).is_ok()
         && question.numbers.iter().all(|number| tells_apart(question, number, options))
@@ -84,7 +84,7 @@ pub(super) fn is_fair(question: &'static Question, options: &Options) -> bool {
 fn tells_apart(question: &'static Question, number: &Number, options: &Options) -> bool {
     let values = |formula: &str| question.evaluate(formula, options).unwrap_or_default();
     let truths = values(number.formula);
-    // a right answer of 0 differs from all that is not
+    // a right answer of 0 differs from every other number
     let differ = |a: f64, b: f64| (a - b).abs() >= APART * a.abs().max(b.abs()) && a != b;
     let wrong: Vec<_> = number.slips.iter().map(|slip| (slip, values(slip.answer))).collect();
     let right_is_alone = wrong
@@ -98,10 +98,10 @@ fn tells_apart(question: &'static Question, number: &Number, options: &Options) 
         })
 }
 
-/// Names of variants, one a line: blank lines left out.
+/// The names of variants, one per line; blank lines are skipped.
 ///
 /// # Errors
-/// If the text is not UTF-8, there is no name, or two names would be one folder.
+/// If the text is not UTF-8, there is no name, or two names would give the same folder.
 pub(super) fn names(bytes: &[u8], file: &str) -> Result<Vec<String>> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let text =
@@ -115,14 +115,14 @@ pub(super) fn names(bytes: &[u8], file: &str) -> Result<Vec<String>> {
     for name in &names {
         if let Some(other) = folders.insert(folder(name).to_lowercase(), name) {
             return Err(Error::Usage(format!(
-                "{file}: “{other}” and “{name}” would have one folder; change one of them"
+                "{file}: “{other}” and “{name}” would share a folder; change one of them"
             )));
         }
     }
     Ok(names)
 }
 
-/// A name as that of a folder on any system.
+/// A name as a folder name that is valid on any system.
 pub(super) fn folder(name: &str) -> String {
     let plain = |c: char| if c.is_alphanumeric() || "-_+ ".contains(c) { c } else { '_' };
     let folder: String = name.trim().chars().map(plain).take(100).collect();
@@ -156,7 +156,7 @@ mod tests {
         assert_eq!(read("\u{feff}Ada\r\n\n  Bo Li \n".as_bytes()), Ok(vec!["Ada".into(), "Bo Li".into()]));
         assert_eq!(read(b"\n \n"), Err("f holds no names, one a line".into()));
         assert_eq!(read(b"\xff"), Err("f is not text in UTF-8".into()));
-        let twice = "f: “A/B” and “a_b” would have one folder; change one of them";
+        let twice = "f: “A/B” and “a_b” would share a folder; change one of them";
         assert_eq!(read(b"A/B\na_b\n"), Err(twice.into()));
         assert_eq!(folder("../é x"), "___é_x");
     }

@@ -1,5 +1,5 @@
-//! The upper 32 bits of the uniform numbers of seed 1, block after block of 2¹⁴ draws, in the order in which
-//! a run sums them: for TestU01.
+//! The upper 32 bits of the uniform numbers of seed 1, in blocks of 2¹⁴ draws in the order in which a run
+//! sums them: input for TestU01.
 
 use std::io::{self, Write};
 

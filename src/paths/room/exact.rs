@@ -1,8 +1,8 @@
-//! Light in the box room without random paths: closed forms, and quadrature of closed forms.
+//! Radiance in the box room without random paths: closed forms, and quadrature of closed forms.
 //!
-//! What p sees of the light is a polygon: the light, less what lies below p's horizon, less the cube's
-//! shadow, which is convex. From the cube's top p sees the walls above z = 1 and the ceiling, which see the
-//! whole light; the ceiling gets none of it, being in its plane.
+//! The part of the light that is visible from p is a polygon: the light without what lies below p's horizon,
+//! and without the cube's shadow, which is convex. The cube's top sees the walls above z = 1, from which the
+//! whole light is visible, and the ceiling, which receives nothing as it lies in the light's plane.
 
 use std::f64::consts::FRAC_1_PI;
 use std::sync::LazyLock;
@@ -12,11 +12,11 @@ use glam::DVec3;
 use super::{BoxRoom, Face, Vertex, form_factor};
 
 impl BoxRoom {
-    /// The radiance, in W m⁻² sr⁻¹, that comes from the light to p and off it, L₁ = ρ L_e P: exact
-    /// everywhere.
+    /// The radiance, in W m⁻² sr⁻¹, that comes from the light and leaves p after one bounce, L₁ = ρ L_e P:
+    /// exact everywhere.
     ///
-    /// P is the form factor of the part of the light that p sees: of the square above p's horizon, less the
-    /// cube's shadow on it, a convex polygon, too ([`form_factor`], after Lambert 1760).
+    /// P is the form factor of the visible part of the light: of the square above p's horizon without the
+    /// cube's shadow on it, which is a convex polygon, too ([`form_factor`], after Lambert 1760).
     ///
     /// ```
     /// use unbiased::paths::room::{BoxRoom, Scene};
@@ -31,18 +31,18 @@ impl BoxRoom {
         self.albedo(&p) * self.scene().radiance * seen(self, &p)
     }
 
-    /// The radiance, in W m⁻² sr⁻¹, that comes from the light to p by way of one other point: on the cube's
-    /// top, where it is known exactly. None elsewhere.
+    /// The radiance, in W m⁻² sr⁻¹, that leaves p after two bounces, exact for p on the cube's top; `None`
+    /// elsewhere.
     ///
-    /// p sees the walls above the cube's height, which see the whole light, and the ceiling, which lies in
-    /// the light's plane and gets none. So it is
+    /// p sees the walls above the cube's height, from which the whole light is visible, and the ceiling,
+    /// which lies in the light's plane and receives nothing. So it is
     ///
     /// > L₂ = (ρ/π) ∫ L₁(x) cos θ dω
     ///
     /// over the directions to these parts of the four walls, with L₁ = [`direct`](Self::direct), integrated
-    /// by the Gauss–Legendre rule. A light that comes near the walls lights them unevenly within that
-    /// distance of their upper edges, so the rule's cells shrink towards these. The relative error was 1e-12
-    /// at most for light half-widths from 0.5 to 2, the whole ceiling.
+    /// by the Gauss–Legendre rule. Near the upper edge of a wall the irradiance from a close light varies
+    /// rapidly, so the rule's cells shrink towards that edge. The relative error was 1e-12 at most for light
+    /// half-widths from 0.5 to 2, the whole ceiling.
     ///
     /// ```
     /// use unbiased::paths::room::{BoxRoom, Scene};
@@ -60,21 +60,22 @@ impl BoxRoom {
     }
 }
 
-/// The part of the cosine-weighted hemisphere above a point that the light fills, the cube's shadow taken
-/// off.
+/// The fraction of the cosine-weighted hemisphere above a point that the light fills, without the cube's
+/// shadow.
 pub(crate) fn seen(room: &BoxRoom, vertex: &Vertex) -> f64 {
     let of = |corners: &[DVec3]| form_factor(corners, vertex.position(), vertex.normal());
     of(&room.light_corners()) - of(&shadow(room, vertex))
 }
 
-/// ∫ `f` dω over the directions from p, on the cube's top, to the walls, whose points f is given, too.
+/// ∫ `f` dω over the directions from p, on the cube's top, to the walls. `f` is given the wall point and the
+/// direction.
 pub(crate) fn over_the_walls(room: &BoxRoom, f: impl Fn(&Vertex, DVec3) -> f64) -> f64 {
     let (p, w) = (room.point().position(), Face::ROOM_HALF_WIDTH);
     let (low, high) = (Face::CUBE_HEIGHT, Face::ROOM_HEIGHT);
     let beside = w - room.scene().light_half_width;
     let mut sum = 0.0;
     for (along, across) in [(DVec3::X, DVec3::Y), (DVec3::Y, DVec3::X)] {
-        // cut where φ begins anew
+        // cut where φ wraps around
         let middle = p.dot(along);
         for (side, end) in [(-w, -w), (-w, w), (w, -w), (w, w)] {
             for z in cells(beside.max(NEGLIGIBLE), high, low) {
@@ -99,15 +100,15 @@ pub(crate) fn over_the_walls(room: &BoxRoom, f: impl Fn(&Vertex, DVec3) -> f64) 
     sum
 }
 
-/// An area of wall, in m², that adds nothing to what p sees, whatever its light.
+/// An area of wall, in m², that adds nothing to the radiance at p, whatever the light.
 const NEGLIGIBLE: f64 = 1e-12;
 
 /// Cuts the interval between `end` and `other` into cells that shrink towards `end`, each given as \[low,
 /// high\].
 ///
-/// What a wall gets from a light at the distance d from it is smooth but for singularities `distance` off its
-/// edges and as far off the real axis. From all of these cells they are so far away that 24 nodes leave an
-/// error of 1e-14 or so; from `distance` = 1 on, the whole wall is such a cell.
+/// The irradiance on a wall from a light at the given `distance` is smooth, but has singularities at that
+/// distance from the wall's edges and from the real axis. These are so far from each cell that 24 nodes have
+/// an error of about 1e-14. For `distance` ≥ 1 the whole wall is one such cell.
 fn cells(distance: f64, end: f64, other: f64) -> impl Iterator<Item = [f64; 2]> {
     let (first, length) = (if distance < 1.0 { 2.0 * distance } else { f64::INFINITY }, (other - end).abs());
     let mut from = 0.0;
@@ -120,14 +121,14 @@ fn cells(distance: f64, end: f64, other: f64) -> impl Iterator<Item = [f64; 2]> 
     })
 }
 
-/// What the cube hides of the light: empty from z = 1 upwards, and from the cube's own sides, where the
-/// horizon hides the same.
+/// The cube's shadow on the light: empty from z = 1 upwards, and for the cube's own sides, where the horizon
+/// hides the same part.
 fn shadow(room: &BoxRoom, vertex: &Vertex) -> Vec<DVec3> {
     let (o, c) = (vertex.position(), Face::CUBE_HALF_WIDTH);
     if o.z >= Face::CUBE_HEIGHT || vertex.face().is_cube() {
         return Vec::new();
     }
-    // the cube's section, seen from o, is thrown on to the ceiling at least `scale` times as large
+    // the cube's section, projected from o on to the ceiling, is at least `scale` times as large
     let scale = (Face::ROOM_HEIGHT - o.z) / (Face::CUBE_HEIGHT - o.z);
     let mut hidden = room.light_corners().to_vec();
     for axis in [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y] {
@@ -149,7 +150,7 @@ fn shadow(room: &BoxRoom, vertex: &Vertex) -> Vec<DVec3> {
     hidden
 }
 
-/// What is left of a convex polygon where `side` is not negative; it is linear.
+/// The part of a convex polygon where the linear function `side` is not negative.
 fn cut(corners: &[DVec3], side: impl Fn(DVec3) -> f64) -> Vec<DVec3> {
     let mut kept = Vec::with_capacity(corners.len() + 1);
     for (a, b) in corners.iter().zip(corners.iter().cycle().skip(1)) {
@@ -168,13 +169,13 @@ const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.
 
 const NODES: usize = 24;
 
-/// Gauss and Legendre's nodes and weights on [0, 1].
+/// Nodes and weights of the Gauss–Legendre rule on [0, 1].
 static GAUSS: LazyLock<[[f64; 2]; NODES]> = LazyLock::new(|| {
     std::array::from_fn(|i| {
         let n = NODES as f64;
         let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n + 0.5)).cos();
         let mut slope = 1.0;
-        // Newton's steps on P_n: six are more than enough
+        // Newton's method on P_n: six steps are more than enough
         for _ in 0..6 {
             let (mut before, mut value) = (1.0, x);
             for j in 2..=NODES {

@@ -43,7 +43,7 @@ impl Face {
     /// The cube's height in metres.
     pub const CUBE_HEIGHT: f64 = 1.0;
 
-    /// All of them; on an edge, [`Vertex::at`] takes the first.
+    /// All faces; on an edge, [`Vertex::at`] takes the first one that fits.
     pub const ALL: [Self; 11] = [
         Self::CubeTop,
         Self::CubeWest,
@@ -90,19 +90,19 @@ impl Face {
     /// Two tangents and the normal.
     #[inline]
     fn frame(self) -> &'static [DVec3; 3] {
-        // the remainder is never taken, and tells the compiler that the index is in range
+        // the index is always in range; the remainder lets the compiler know
         &FRAMES[self as usize % FRAMES.len()]
     }
 
-    /// The smallest and the largest coordinates of its points, in metres; [`normal`](Self::normal) has an
-    /// example. The floor's are those of the whole square, with what the cube stands on.
+    /// The smallest and the largest coordinates of the face, in metres; [`normal`](Self::normal) has an
+    /// example. The floor's are those of the whole square, with the part under the cube.
     #[inline]
     pub fn bounds(self) -> [DVec3; 2] {
         BOUNDS[self as usize % BOUNDS.len()]
     }
 
-    /// The area in m², as in the example of [`is_cube`](Self::is_cube): the floor's without what the cube
-    /// stands on, the ceiling's with the light.
+    /// The area in m², as in the example of [`is_cube`](Self::is_cube): the floor's without the part under
+    /// the cube, the ceiling's with the light.
     pub fn area(self) -> f64 {
         match self {
             Self::Floor => 15.0,
@@ -112,8 +112,8 @@ impl Face {
     }
 }
 
-/// Two tangents and the normal of each face, in the order of [`Face::ALL`]. Whether a frame is right- or
-/// left-handed makes no difference to directions that are symmetric around the normal.
+/// Two tangents and the normal of each face, in the order of [`Face::ALL`]. Some frames are left-handed,
+/// which makes no difference to directions that are symmetric around the normal.
 const FRAMES: [[DVec3; 3]; 11] = [
     [DVec3::X, DVec3::Y, DVec3::Z],
     [DVec3::Y, DVec3::Z, DVec3::NEG_X],
@@ -168,9 +168,6 @@ impl Vertex {
     /// The point at these coordinates, with the face that it lies on. On an edge, which several faces share,
     /// the cube's top comes first, then the cube's sides, the floor, the ceiling and the walls.
     ///
-    /// # Errors
-    /// If no face is there, or only the part of the floor that the cube stands on.
-    ///
     /// ```
     /// use unbiased::paths::room::{Face, Vertex};
     ///
@@ -180,6 +177,9 @@ impl Vertex {
     /// assert_eq!(error.to_string(), format!("the point (0, 0.25, 0) {sentence}"));
     /// # Ok::<(), unbiased::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// If no face is there, or only the part of the floor that the cube stands on.
     pub fn at(point: [f64; 3]) -> Result<Self> {
         let position = DVec3::from_array(point);
         let contains = |face: &Face| {
@@ -200,7 +200,7 @@ impl Vertex {
         Self { position, face }
     }
 
-    /// Where it is, in metres.
+    /// The position, in metres.
     #[inline]
     pub fn position(&self) -> DVec3 {
         self.position
@@ -245,7 +245,7 @@ fn under_the_cube(position: DVec3) -> bool {
     position.x.abs().max(position.y.abs()) < Face::CUBE_HALF_WIDTH
 }
 
-/// The error of a point that is none of a face.
+/// The error for a point that is not a valid vertex.
 pub(super) fn off([x, y, z]: [f64; 3], reason: &'static str) -> Error {
     Error::Point { x, y, z, reason }
 }

@@ -1,14 +1,14 @@
-//! Section 4: the box room, the one scene that the worksheet's paths need.
+//! Section 4: the box room, the scene of the worksheet's paths.
 //!
 //! In metres, z up: a room \[−2, 2\]×\[−2, 2\]×\[0, 4\] of diffuse faces; the cube \[−½, ½\]²×\[0, 1\] on its
-//! floor; a square light in the middle of the ceiling, facing down and reflecting nothing; and p, the point
-//! whose radiance is asked for. The shapes are fixed, so a ray is followed by two slab tests, one from inside
-//! the room and one from outside the cube: [`nearest_hit`] and [`visible`]. A scene's numbers can be chosen:
-//! [`Scene`] holds them, [`BoxRoom`] is a scene that was found sound.
+//! floor; a square light in the middle of the ceiling, which faces down and reflects nothing; and p, the
+//! point whose radiance is asked for. The shapes are fixed, so a ray needs two slab tests, one from inside
+//! the room and one from outside the cube: [`nearest_hit`] and [`visible`]. The other numbers can be chosen:
+//! [`Scene`] holds them, and [`BoxRoom`] is a scene that has been checked.
 //!
-//! The light that reaches a point at once has a closed form where the cube hides none of it,
-//! [`BoxRoom::direct`], made of the form factor of a polygon, [`form_factor`]. What arrives after more
-//! bounces is estimated by [`paths`](crate::paths).
+//! The radiance after one bounce has a closed form if the cube hides nothing, [`BoxRoom::direct`], made of
+//! the form factor of a polygon, [`form_factor`]. Radiance after more bounces is estimated by
+//! [`paths`](crate::paths).
 
 use glam::DVec3;
 
@@ -40,15 +40,15 @@ pub use ray::{nearest_hit, visible};
 pub struct Scene {
     /// The albedo ρ of the room's six faces, 0.5.
     pub wall_albedo: f64,
-    /// The albedo ρ of the cube's five, 0.8.
+    /// The albedo ρ of the cube's five faces, 0.8.
     pub cube_albedo: f64,
-    /// The radiance L_e of the light in W m⁻² sr⁻¹, 10. From 1e-100 to 1e100, or 0: neither its products with
-    /// areas and weights nor their squares leave `f64` then.
+    /// The radiance L_e of the light in W m⁻² sr⁻¹, 10. 0, or from 1e-100 to 1e100, so that neither its
+    /// products with areas and weights nor their squares leave the range of `f64`.
     pub radiance: f64,
-    /// Half the light's side in metres, ½, and from 1e-50 to 2; 0 is no light.
+    /// Half the light's side in metres, ½. From 1e-50 to 2, or 0 for no light.
     pub light_half_width: f64,
-    /// The radiance that every face emits in W m⁻² sr⁻¹, the light apart: 0, within the same limits. With it
-    /// and no light the room is a furnace, in which everything is exact.
+    /// The radiance in W m⁻² sr⁻¹ that every face but the light emits: 0, within the same limits. With
+    /// emission and no light the room is a furnace test, in which every radiance is known exactly.
     pub emission: f64,
     /// The point p, (0, 0, 1): the middle of the cube's top.
     pub point: [f64; 3],
@@ -67,7 +67,7 @@ impl Default for Scene {
     }
 }
 
-/// A scene that was found sound.
+/// A scene that has been checked.
 ///
 /// ```
 /// use unbiased::paths::room::{BoxRoom, Scene};
@@ -89,8 +89,8 @@ impl BoxRoom {
     ///
     /// # Errors
     /// If an albedo is not in \[0, 1\], the radiance or the emission is neither 0 nor from 1e-100 to 1e100,
-    /// the light does not fit the ceiling or is narrower than 1e-50 m, or p lies on no face, under the cube,
-    /// or on the light, which reflects nothing.
+    /// the light is larger than the ceiling or its half-width is below 1e-50 m, or p lies on no face, under
+    /// the cube, or on the light, which reflects nothing.
     pub fn new(scene: Scene) -> Result<Self> {
         let fraction = |name, albedo: f64| {
             let allowed = "between 0 and 1 (above 1 it would create energy)";
@@ -127,7 +127,7 @@ impl BoxRoom {
         self.point
     }
 
-    /// Whether a point belongs to the light, whose edge does.
+    /// Whether a point belongs to the light, its edge included.
     ///
     /// ```
     /// use unbiased::paths::room::{BoxRoom, Scene, Vertex};
@@ -156,7 +156,7 @@ impl BoxRoom {
         }
     }
 
-    /// The radiance L_e that a point emits, in W m⁻² sr⁻¹: the light's, or the faces' emission.
+    /// The radiance L_e that a point emits, in W m⁻² sr⁻¹: the light's radiance, or the faces' emission.
     /// [`is_light`](Self::is_light) has an example.
     #[inline]
     pub fn emitted(&self, vertex: &Vertex) -> f64 {
@@ -186,18 +186,18 @@ impl BoxRoom {
         side * side
     }
 
-    /// The radiance, in W m⁻² sr⁻¹, that comes from the light to a point and off it, ρ L_e P with P the
-    /// light's [`form_factor`], **as if the cube hid nothing**: light after one bounce, k = 1.
+    /// The radiance, in W m⁻² sr⁻¹, that comes from the light and leaves a point after one bounce, ρ L_e P
+    /// with P the light's [`form_factor`], **as if the cube hid nothing**.
     /// [`light_corners`](Self::light_corners) has an example.
     ///
-    /// It does hide some of it from the floor near the cube, where max(|x|, |y|) < (2 + h)/3 for a light of
-    /// half-width h, and nowhere else; [`one_bounce`](Self::one_bounce) takes that off.
+    /// The cube hides a part of the light only from the floor near it, where max(|x|, |y|) < (2 + h)/3 for a
+    /// light of half-width h; [`one_bounce`](Self::one_bounce) accounts for that.
     pub fn direct(&self, vertex: &Vertex) -> f64 {
         let seen = form_factor(&self.light_corners(), vertex.position(), vertex.normal());
         self.albedo(vertex) * self.scene.radiance * seen
     }
 
-    /// A point drawn uniformly on the light, and what it sends to `vertex`.
+    /// A point drawn uniformly on the light, and the irradiance that it gives at `vertex`.
     #[inline]
     pub(crate) fn sample_light(&self, vertex: &Vertex, rng: &mut Stream) -> LightSample {
         let h = self.scene.light_half_width;
@@ -218,13 +218,13 @@ impl BoxRoom {
     }
 }
 
-/// One point of the light, drawn uniformly.
+/// A light sample: a uniform point of the light.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LightSample {
-    /// Where.
+    /// The position of the point.
     pub point: DVec3,
-    /// L_e A cos θ cos θ′/r², an unbiased estimate of the irradiance in W m⁻²; 0 where it is not seen.
+    /// L_e A cos θ cos θ′/r², an unbiased estimate of the irradiance in W m⁻²; 0 if the point is not visible.
     pub irradiance: f64,
-    /// Whether it is seen.
+    /// Whether it is visible.
     pub visible: bool,
 }

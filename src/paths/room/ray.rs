@@ -1,24 +1,24 @@
 //! Where a ray ends: two slab tests.
 //!
-//! A ray is inside the room and outside the cube, so it ends at the first of the room's planes that lies
-//! ahead unless it enters the cube before that. The coordinate along the normal of the face that it hits is
-//! set exactly, and the others are kept within the face, so no ray starts a hair behind its face, none hits
-//! the face it starts on, and no distance has to be added for that.
+//! A ray is inside the room and outside the cube. So it ends at the first plane of the room ahead, unless it
+//! enters the cube before that. The coordinate along the normal of the face that it hits is set exactly, and
+//! the others are kept within the face. So no ray starts behind its face, none hits the face it starts on,
+//! and no offset has to be added.
 
 use glam::DVec3;
 
 use super::face::{Face, Vertex};
 
-/// The first point that a ray from `from` meets in `direction` (of any length, in the room's coordinates).
-/// None if the direction has no length, is not finite, or points below the horizon of `from`.
+/// The first point that a ray from `from` hits in `direction` (of any length, in the room's coordinates).
+/// `None` if the direction is 0, not finite, or points below the horizon of `from`.
 ///
-/// Special rays are treated so that every one of them ends on a face:
-/// - Along a face of the room, it goes on to the wall ahead. Along a face of the cube, or through its edge or
-///   corner without entering it, it passes.
+/// Every ray ends on a face, also in special cases:
+/// - Along a face of the room, it goes on to the wall ahead. Along a face of the cube, or through an edge or
+///   corner of it without entering, it passes.
 /// - Into an edge or corner of the room, it ends there, on one of the faces that meet.
-/// - Along the floor it ends at the cube: nothing passes under it.
-/// - From an edge between two faces of the room towards the other one, it ends where it starts, on that other
-///   one.
+/// - Along the floor, it ends at the cube: nothing passes under it.
+/// - From an edge between two faces of the room towards the other face, it ends where it starts, on that
+///   other face.
 ///
 /// ```
 /// use glam::DVec3;
@@ -35,7 +35,7 @@ pub fn nearest_hit(from: &Vertex, direction: DVec3) -> Option<Vertex> {
     if !(direction.is_finite() && largest > 0.0 && from.normal().dot(direction) >= 0.0) {
         return None;
     }
-    // twice, as the largest component may be subnormal
+    // normalized in two steps, as the largest component may be subnormal
     let scaled = direction / largest;
     Some(nearest(from.position(), scaled / scaled.length()))
 }
@@ -51,8 +51,8 @@ pub(crate) fn nearest(origin: DVec3, direction: DVec3) -> Vertex {
     ray.at(distance, face)
 }
 
-/// Whether the cube leaves the view from `from` to a point of the room free. It may be touched. A point that
-/// is not finite is not seen.
+/// Whether `to`, a point of the room, is visible from `from`: the cube may be touched, but does not hide it.
+/// A point that is not finite is not visible.
 ///
 /// ```
 /// use glam::DVec3;
@@ -76,19 +76,19 @@ pub(crate) fn sees(from: &Vertex, to: DVec3) -> bool {
         return true; // quickly, for most
     }
     let (enters, leaves, _) = Ray::new(origin, to - origin).cube();
-    // where `to` lies on the cube, `enters` is 1 but for its last bit
+    // if `to` lies on the cube, `enters` is 1 up to rounding
     !(blocks(enters, leaves) && enters < 1.0 - f64::EPSILON)
 }
 
-/// Whether a line that enters the cube and leaves it at these distances does so ahead of its origin. One that
-/// rounding put a hair inside the cube counts as on the face that is nearer: what goes out of it does not
-/// come out on the other side.
+/// Whether a line that enters and leaves the cube at these distances does so ahead of its origin. An origin
+/// that rounding has put just inside the cube counts as on the nearer face, so that a ray away from that face
+/// does not come out on the other side.
 #[inline]
 fn blocks(enters: f64, leaves: f64) -> bool {
     enters < leaves && enters + leaves > 0.0
 }
 
-/// A ray, with what both tests need of it.
+/// A ray, in the form that both tests need.
 struct Ray {
     origin: DVec3,
     direction: DVec3,
@@ -98,13 +98,13 @@ struct Ray {
 impl Ray {
     #[inline]
     fn new(origin: DVec3, direction: DVec3) -> Self {
-        // so steep that its inverse may overflow, a component moves nothing in a room of a few metres
+        // components so small that their inverse may overflow move nothing in a room of a few metres
         let flat = |d: f64| if d.abs() < 1e-300 { 0.0 } else { d };
         let direction = DVec3::new(flat(direction.x), flat(direction.y), flat(direction.z));
         Self { origin, direction, inverse: direction.recip() }
     }
 
-    /// How far the first of the room's planes is, and which.
+    /// The distance of the first of the room's planes, and its face.
     #[inline]
     fn room(&self) -> (f64, Face) {
         let w = Face::ROOM_HALF_WIDTH;
@@ -112,7 +112,7 @@ impl Ray {
         let y = self.ahead(self.direction.y, self.origin.y, self.inverse.y, -w, w);
         let z = self.ahead(self.direction.z, self.origin.z, self.inverse.z, 0.0, Face::ROOM_HEIGHT);
         let pick = |ahead: bool, high, low| if ahead { high } else { low };
-        // one selection after another, as a processor cannot foresee which of three is the least
+        // one selection after another: a branch for the least of three would be mispredicted
         let mut first = (x, pick(self.direction.x > 0.0, Face::East, Face::West));
         if y < first.0 {
             first = (y, pick(self.direction.y > 0.0, Face::North, Face::South));
@@ -123,7 +123,7 @@ impl Ray {
         first
     }
 
-    /// How far the plane ahead on one axis is.
+    /// The distance of the plane ahead on one axis.
     #[inline]
     fn ahead(&self, direction: f64, origin: f64, inverse: f64, low: f64, high: f64) -> f64 {
         if direction == 0.0 {
@@ -133,8 +133,8 @@ impl Ray {
         (plane - origin) * inverse
     }
 
-    /// Where the ray's line enters the cube and where it leaves it, and through which face it enters. It
-    /// meets the cube where it enters before it leaves; the cube's z has no lower end, since nothing passes
+    /// The distances at which the ray's line enters and leaves the cube, and the face that it enters by. The
+    /// line hits the cube if it enters before it leaves. The cube has no lower end in z, as nothing passes
     /// under it.
     #[inline]
     fn cube(&self) -> (f64, f64, Face) {
@@ -167,8 +167,8 @@ impl Ray {
     }
 }
 
-/// Where a line enters and leaves the slab from −w to w on one axis. A line along it is in it if it is
-/// strictly between.
+/// Where a line enters and leaves the slab from −w to w on one axis. A line parallel to the slab is inside if
+/// it is strictly between the planes.
 #[inline]
 fn between(direction: f64, origin: f64, inverse: f64, w: f64) -> (f64, f64) {
     if direction == 0.0 {

@@ -1,4 +1,4 @@
-//! On which side of a polygon's plane a point is, whatever their sizes.
+//! On which side of a polygon's plane a point lies, exactly, whatever their sizes.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ pub(super) fn volume_sign(corners: &[DVec3], point: DVec3) -> f64 {
     let [first, rest @ ..] = corners else { return 0.0 };
     let mut sum = ExactSum::default();
     for (b, c) in rest.iter().zip(rest.iter().skip(1)) {
-        // the determinant of the differences, from the coordinates themselves, which nothing has rounded
+        // from the determinant of the coordinates themselves, as differences would be rounded
         for (sign, [a, b, c]) in
             [(1, [first, b, c]), (-1, [&point, b, c]), (-1, [first, &point, c]), (-1, [first, b, &point])]
         {
@@ -22,8 +22,8 @@ pub(super) fn volume_sign(corners: &[DVec3], point: DVec3) -> f64 {
     sum.sign()
 }
 
-/// A sum of products of three numbers, to the last bit: its digits in base 2³², by their place, not carried
-/// yet.
+/// A sum of products of three numbers, exact: its digits in base 2³² by exponent, with carries still to be
+/// propagated.
 #[derive(Default)]
 struct ExactSum(BTreeMap<i64, i128>);
 
@@ -33,7 +33,8 @@ impl ExactSum {
         let (pair, exponent) = (a.unsigned_abs() * b.unsigned_abs(), i + j + k);
         let third = (sign * a.signum() * b.signum() * c) << exponent.rem_euclid(32);
         for digit in 0..4 {
-            // 32 bits of 106, times 53, moved by up to 31: 116, of which 84 go on to the next place
+            // 32 bits of 106, times 53 bits, shifted by up to 31: 116 bits, of which 84 go on to the next
+            // digit
             let part = (pair >> (32 * digit) & 0xffff_ffff) as i128 * third;
             let place = exponent.div_euclid(32) + digit;
             *self.0.entry(place).or_default() += part & 0xffff_ffff;
@@ -75,7 +76,7 @@ mod tests {
         #![proptest_config(Config { rng_seed: RngSeed::Fixed(1), failure_persistence: None,
             ..Config::with_cases(2_000) })]
 
-        /// Against integers, in any unit, and for a pyramid, whose two tetrahedra may cancel.
+        /// Agrees with integer arithmetic, in any unit, and for a pyramid, whose two tetrahedra may cancel.
         #[test]
         fn the_sign_of_a_volume_is_exact(
             corners in prop::array::uniform4(whole(1 << 40)), point in whole(1 << 40), power in -1074..900,
@@ -100,7 +101,7 @@ mod tests {
         }
     }
 
-    /// 1 beside 1e300 and 1e-300, and a difference in the last place of the longest product.
+    /// 1 combined with 1e300 and 1e-300, and a difference in the last place of the longest product.
     #[test]
     fn no_digit_is_lost() {
         let flat = |z: f64, far: f64| [[far, far, z], [-far, far, z], [-far, -far, z]].map(DVec3::from_array);

@@ -1,4 +1,4 @@
-//! A class judged at once: numbers worked out by hand from a CSV file, and draws from a folder.
+//! Judges a whole class: numbers worked out by hand from a CSV file, and draws from a folder.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
@@ -9,13 +9,13 @@ use serde_json::json;
 use super::super::by_hand::{self, Judgement};
 use super::super::terminal::{folded, width};
 use super::super::{Options, Table};
+use super::arguments::Arguments;
 use super::draws::{self, Source};
-use super::wish::Wish;
 use super::{Verdict, exercise};
 use crate::check::{self, Finding};
 use crate::error::{Error, Result};
 
-/// What each student's answers come to, in the order of the files.
+/// The judgement of each student's answers, in the order of the files.
 pub struct Report {
     rows: Vec<Row>,
 }
@@ -23,23 +23,23 @@ pub struct Report {
 struct Row {
     student: String,
     question: String,
-    /// None where the answer cannot be judged at all.
+    /// `None` if the answer cannot be judged at all.
     verdict: Option<Verdict>,
     /// A mistake's name for programs, and for people.
     mistake: Option<(String, String)>,
-    /// To the truth.
+    /// The ratio to the truth.
     ratio: Option<f64>,
-    /// The judgement in a sentence.
+    /// The judgement in one sentence.
     reason: String,
 }
 
 impl Report {
-    /// Judges a CSV file with the columns student, question, answer and, if there is one, variant, and a
-    /// folder of files `STUDENT_QUESTION.txt` of draws.
-    pub fn of(answers: Option<&str>, draws: Option<&str>, wish: &Wish) -> Result<Self> {
+    /// Judges a CSV file with the columns student, question, answer and optionally variant, and a folder of
+    /// files `STUDENT_QUESTION.txt` of draws.
+    pub fn of(answers: Option<&str>, draws: Option<&str>, arguments: &Arguments) -> Result<Self> {
         let mut rows = Vec::new();
         if let Some(path) = answers {
-            read_answers(path, wish, &mut rows)?;
+            read_answers(path, arguments, &mut rows)?;
         }
         if let Some(path) = draws {
             read_folder(Path::new(path), &mut rows)?;
@@ -47,13 +47,13 @@ impl Report {
         Ok(Self { rows })
     }
 
-    /// Undecided if anything is, else wrong if anything is.
+    /// Undecided if any row is, else wrong if any row is.
     pub fn verdict(&self) -> Verdict {
         let worst = self.rows.iter().map(|row| row.verdict.unwrap_or(Verdict::Undecided));
         worst.max().unwrap_or(Verdict::Undecided)
     }
 
-    /// How many students made each mistake, the most frequent first: question, name for programs, name,
+    /// How many students made each mistake, most frequent first: question, name for programs, name, number of
     /// students.
     fn summary(&self) -> Vec<(&str, &str, &str, usize)> {
         let mut counts = BTreeMap::<_, usize>::new();
@@ -68,7 +68,7 @@ impl Report {
         summary
     }
 
-    /// One object a line: the rows, then the summary.
+    /// One object per line: the rows, then the summary.
     pub fn json(&self) -> String {
         let rows = self.rows.iter().map(|row| {
             json!({
@@ -82,7 +82,7 @@ impl Report {
         rows.chain(summary).map(|line| line.to_string()).collect::<Vec<_>>().join("\n")
     }
 
-    /// The rows alone.
+    /// The rows, without the summary.
     pub fn csv(&self) -> Result<String> {
         let failed = |error: String| Error::Write { path: "the report".into(), reason: error };
         let mut out = csv::Writer::from_writer(Vec::new());
@@ -145,7 +145,7 @@ impl fmt::Display for Report {
     }
 }
 
-/// A table's lines, as far as they fit the terminal.
+/// A table's lines, cut to the width of the terminal.
 fn cut(table: &Table) -> String {
     let width = width();
     let fitting = |line: String| {
@@ -155,7 +155,7 @@ fn cut(table: &Table) -> String {
     table.lines().into_iter().map(fitting).collect::<Vec<_>>().join("\n")
 }
 
-/// Who has answered which question, and where.
+/// Where each student's answer to each question was read.
 #[derive(Default)]
 struct Given(HashMap<(String, String), String>);
 
@@ -170,11 +170,11 @@ impl Given {
     }
 }
 
-fn read_answers(path: &str, wish: &Wish, rows: &mut Vec<Row>) -> Result<()> {
+fn read_answers(path: &str, arguments: &Arguments, rows: &mut Vec<Row>) -> Result<()> {
     let unread = |error: &dyn fmt::Display| Error::Usage(format!("{path} could not be read: {error}"));
     let text = std::fs::read(path).map_err(|error| unread(&error))?;
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
-    // spreadsheets whose decimal sign is a comma put semicolons between the columns
+    // spreadsheets with a decimal comma separate columns by semicolons
     let head = text.split(|byte| *byte == b'\n').next().unwrap_or_default();
     let delimiter = if head.contains(&b';') && !head.contains(&b',') { b';' } else { b',' };
     let mut reader =
@@ -184,7 +184,7 @@ fn read_answers(path: &str, wish: &Wish, rows: &mut Vec<Row>) -> Result<()> {
     let [mut student, mut question, mut answer] = [0; 3];
     for (name, place) in [("student", &mut student), ("question", &mut question), ("answer", &mut answer)] {
         let missing =
-            || Error::Usage(format!("{path} has no column {name}: it takes student, question, answer"));
+            || Error::Usage(format!("{path} has no column {name}; it needs student, question, answer"));
         *place = column(name).ok_or_else(missing)?;
     }
     let variant = column("variant");
@@ -200,9 +200,9 @@ fn read_answers(path: &str, wish: &Wish, rows: &mut Vec<Row>) -> Result<()> {
         let (student, question) = (field(student, "student")?, field(question, "question")?);
         given.once(student, question, format!("line {line}"))?;
         let mut parameters: Vec<_> =
-            wish.own.iter().filter(|(name, _)| has(question, name)).cloned().collect();
+            arguments.own.iter().filter(|(name, _)| has(question, name)).cloned().collect();
         let cell = variant.and_then(|place| record.get(place)).unwrap_or("").trim();
-        let (mut name, mut assignments) = (wish.variant.as_deref(), "");
+        let (mut name, mut assignments) = (arguments.variant.as_deref(), "");
         if cell.contains('=') {
             assignments = cell;
         } else if !cell.is_empty() {
@@ -217,7 +217,7 @@ fn read_answers(path: &str, wish: &Wish, rows: &mut Vec<Row>) -> Result<()> {
         let parameters =
             super::parameters(question, name, &parameters).map_err(|error| at(error.to_string()))?;
         let text = record.get(answer).unwrap_or("");
-        rows.push(judged(student, question, text, &parameters, wish.digits));
+        rows.push(judged(student, question, text, &parameters, arguments.digits));
     }
     Ok(())
 }
@@ -252,7 +252,8 @@ fn judged(student: &str, question: &str, text: &str, parameters: &Options, digit
     row(Some(verdict), mistake, ratio, judgement.to_string())
 }
 
-/// Draws of each student and question, in files `STUDENT_QUESTION.txt`, the lines as for `--draws-from`.
+/// Reads draws of each student and question from files `STUDENT_QUESTION.txt`, with lines as for
+/// `--draws-from`.
 fn read_folder(folder: &Path, rows: &mut Vec<Row>) -> Result<()> {
     let unread =
         |error: std::io::Error| Error::Usage(format!("{} could not be read: {error}", folder.display()));

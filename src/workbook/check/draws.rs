@@ -1,4 +1,4 @@
-//! Draws made by another program, read from text: one a line, or a probe's number and a draw.
+//! Draws made by another program, read from text: one draw per line, or a probe's number and a draw.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
@@ -6,10 +6,10 @@ use std::io::{self, BufRead, BufReader, Read};
 use crate::check::{Measurement, Probe, Tally};
 use crate::error::{Error, Result};
 
-/// Where draws come from, and the probe that they were made for if the command line says.
+/// A source of draws, and the probe that they were made for, if the command line says so.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Source {
-    /// From 1.
+    /// The number of the probe, from 1.
     pub probe: Option<usize>,
     /// A file, or `-` for standard input.
     pub file: String,
@@ -25,10 +25,10 @@ impl Source {
     }
 }
 
-/// A line that holds a draw is shorter than this.
+/// The longest line that can hold a draw.
 const LONGEST: u64 = 4096;
 
-/// What the draws of all sources came to on the probes, in memory that does not grow with them.
+/// Judges the draws of all sources on their probes, in memory that does not grow with them.
 pub fn measure(sources: &[Source], probes: &[&'static Probe]) -> Result<Vec<Measurement>> {
     let mut tallies = vec![Tally::default(); probes.len()];
     let mut given: Vec<usize> = Vec::new();
@@ -108,13 +108,13 @@ fn read(mut lines: impl BufRead, source: &Source, tallies: &mut [Tally]) -> Resu
     }
 }
 
-/// A number, with a decimal comma perhaps.
+/// A number, possibly with a decimal comma.
 fn draw_of(word: &str) -> Option<f64> {
     let draw = word.parse().or_else(|_| word.replacen(',', ".", 1).parse::<f64>()).ok()?;
     draw.is_finite().then_some(draw)
 }
 
-/// Text in UTF-8, or in UTF-16 where all of it is ASCII, without a byte-order mark: PowerShell writes both.
+/// Decodes UTF-8, and UTF-16 without a byte-order mark if all of it is ASCII: PowerShell writes both.
 fn decoded(line: &mut Vec<u8>) -> Option<&str> {
     const MARKS: [&[u8]; 3] = [b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff"];
     for mark in MARKS {

@@ -1,12 +1,12 @@
-//! What each classic mistake of an exercise does, probe by probe.
+//! The effect of each classic mistake of an exercise on each probe.
 
 use super::super::Table;
 use crate::check::{Exercise, Mistake, Probe};
 
-/// The mean of each classic mistake over the truth, on each probe of its exercise.
+/// The mean of each classic mistake divided by the truth, on each probe of its exercise.
 ///
-/// A 1 in full is a mistake that the probe cannot see. Where the truth is 0 the ratio is taken to ∫ |f|, and
-/// 0 is right.
+/// A plain 1 is a mistake that the probe cannot detect. If the truth is 0 the ratio is to ∫ |f|, and 0 is
+/// right.
 pub fn mistakes(exercise: &Exercise) -> Table {
     let probes = exercise.probes();
     let row = |mistake: &Mistake| {
@@ -24,7 +24,7 @@ pub fn mistakes(exercise: &Exercise) -> Table {
     Table::new(&caption, columns, exercise.mistakes().iter().map(row))
 }
 
-/// The ratio to two or three digits; in full, 1 or 0, where the probe does not see the mistake.
+/// The ratio to two or three digits, or a plain 1 or 0 if the probe does not detect the mistake.
 fn told(exercise: &Exercise, mistake: &Mistake, probe: &Probe) -> String {
     let found = exercise.ratio(mistake, probe);
     let ratio = found.mean;
@@ -32,7 +32,7 @@ fn told(exercise: &Exercise, mistake: &Mistake, probe: &Probe) -> String {
         _ if !probe.sees(found) => format!("{}", probe.right_ratio()),
         size if size.is_nan() => "–".into(),
         0.0 => "0".into(),
-        // what would look right shows how far it is off
+        // show the deviation if rounding would make it look right
         _ if (ratio - 1.0).abs() < 5e-3 && probe.right_ratio() == 1.0 => format!("1{:+.0e}", ratio - 1.0),
         size => {
             let most = if size < 0.1 { 3 } else { usize::from(size < 10.0) + 1 };

@@ -1,11 +1,11 @@
-//! The reader's door: one's own estimator, draws of any other program, or numbers worked out by hand, judged;
-//! one's own or a class's.
+//! Judges answers of readers: their own estimators, draws of any other program, or numbers worked out by
+//! hand, of one reader or of a class.
 
+mod arguments;
 mod class;
 mod draws;
 mod mistakes;
 mod programs;
-mod wish;
 
 use std::io::{self, Write};
 use std::panic::{self, AssertUnwindSafe};
@@ -26,9 +26,9 @@ use crate::error::{Error, Result};
 use crate::numbers::shortened;
 use crate::run::{Budget, Run, Shortfall};
 use crate::{inversion, lambertian, paths, rectangle, roulette};
+use arguments::{Action, Arguments, HELP};
 use draws::Source;
 pub use mistakes::mistakes;
-use wish::{Deed, HELP, Wish};
 
 /// All exercises, in the order of the worksheet.
 pub fn exercises() -> [&'static Exercise; 6] {
@@ -42,10 +42,10 @@ pub fn exercises() -> [&'static Exercise; 6] {
     ]
 }
 
-/// The exercise that a worksheet question ("3.5") asks for.
+/// The exercise for a worksheet question ("3.5").
 ///
 /// # Errors
-/// If it asks for no estimator.
+/// If the question does not ask for an estimator.
 pub fn exercise(question: &str) -> Result<&'static Exercise> {
     let mut all = exercises().into_iter();
     all.find(|exercise| exercise.questions().any(|of| of == question)).ok_or_else(|| {
@@ -57,14 +57,15 @@ pub fn exercise(question: &str) -> Result<&'static Exercise> {
     })
 }
 
-/// The `main` of an example that checks the reader's own estimators, one an exercise, for the worksheet
-/// question in hand or that of `--question`.
+/// The `main` of an example that checks the reader's own estimators, one per exercise, for `question` or that
+/// of `--question`.
 ///
-/// Without other options it tries the estimator on all probes of its exercise, and says what the ratios to
-/// the truth are and which classic mistakes they are consistent with. `--help` lists what else can be judged:
+/// Without other options it runs the estimator on all probes of its exercise, and prints the ratios to the
+/// truth and the classic mistakes that are consistent with them. `--help` lists what else can be judged:
 /// draws of a program in any language, numbers worked out by hand, the answers of a class.
 pub fn check_mine(question: &str, mine: &[Attempt<'_>]) -> ExitCode {
-    let judged = Wish::read(question).and_then(|wish| Ok((wish.exit_code, wish.grant(mine)?)));
+    let judged =
+        Arguments::read(question).and_then(|arguments| Ok((arguments.exit_code, arguments.run(mine)?)));
     match judged {
         Ok((true, verdict)) => ExitCode::from(verdict as u8),
         Ok((false, _)) => ExitCode::SUCCESS,
@@ -72,7 +73,7 @@ pub fn check_mine(question: &str, mine: &[Attempt<'_>]) -> ExitCode {
     }
 }
 
-/// What a judgement comes to; its number is the exit code of `--exit-code`.
+/// The verdict on an answer; its number is the exit code with `--exit-code`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Verdict {
     Right = 0,
@@ -98,35 +99,35 @@ impl Verdict {
     }
 }
 
-/// Draws on each probe where nothing else is asked for.
+/// The draws on each probe unless something else is asked for.
 const DRAWS: u64 = 1_000_000;
 
-/// What a probe may take where an error is asked for.
+/// The most time for a probe if an error is asked for.
 const MOST_TIME: Duration = Duration::from_secs(5);
 
-impl Wish {
-    fn grant(&self, mine: &[Attempt<'_>]) -> Result<Verdict> {
-        let (said, verdict) = match &self.deed {
-            Deed::Help => (HELP.to_owned(), Verdict::Right),
-            Deed::Probes => {
+impl Arguments {
+    fn run(&self, mine: &[Attempt<'_>]) -> Result<Verdict> {
+        let (said, verdict) = match &self.action {
+            Action::Help => (HELP.to_owned(), Verdict::Right),
+            Action::Probes => {
                 let exercise = exercise(&self.question)?;
                 let text = if self.json { programs::probes_json } else { programs::probes };
                 (text(exercise, &self.question), Verdict::Right)
             }
-            Deed::Mistakes => {
+            Action::Mistakes => {
                 let table = mistakes(exercise(&self.question)?);
                 let rows = stacked(&table, width()).join("\n");
                 let plain = || format!("{}\n\n{rows}", folded(&table.caption, width()));
                 (if self.json { table.json() } else { plain() }, Verdict::Right)
             }
-            Deed::Template(language) => {
+            Action::Template(language) => {
                 let exercise = exercise(&self.question)?;
                 (programs::template(exercise, &self.question, *language)?, Verdict::Right)
             }
-            Deed::Answer(text) => self.judge_answer(text)?,
-            Deed::Draws(sources) => self.judge_draws(sources)?,
-            Deed::Mine => self.judge_mine(mine)?,
-            Deed::Class { answers, draws } => {
+            Action::Answer(text) => self.judge_answer(text)?,
+            Action::Draws(sources) => self.judge_draws(sources)?,
+            Action::Mine => self.judge_mine(mine)?,
+            Action::Class { answers, draws } => {
                 let report = class::Report::of(answers.as_deref(), draws.as_deref(), self)?;
                 let text = match (self.json, self.csv) {
                     (true, _) => report.json(),
@@ -136,8 +137,8 @@ impl Wish {
                 (text, report.verdict())
             }
         };
-        let text = match self.deed {
-            Deed::Mine | Deed::Answer(_) | Deed::Draws(_) if !self.json => folded(&said, width()),
+        let text = match self.action {
+            Action::Mine | Action::Answer(_) | Action::Draws(_) if !self.json => folded(&said, width()),
             _ => said,
         };
         writeln!(io::stdout(), "{text}").or_else(print::until_the_pipe_closes)?;
@@ -151,7 +152,7 @@ impl Wish {
             let given: Vec<_> =
                 mine.iter().map(|attempt| format!("“{}”", attempt.exercise().name())).collect();
             return Err(Error::Usage(format!(
-                "question {question} is about “{asked}”, what is written here about {}",
+                "question {question} is about “{asked}”, but the estimator in this file is about {}",
                 given.join(" and ")
             )));
         };
@@ -176,12 +177,12 @@ impl Wish {
         ))
     }
 
-    /// The reader's estimator on every probe, and what the probe that is the furthest from the error asked
-    /// for would have taken.
+    /// Runs the reader's estimator on every probe. Also returns how far the slowest probe was from the error
+    /// asked for, if it was cut short.
     fn measure(&self, mine: &Attempt<'_>) -> Result<(Vec<Measurement>, Option<Shortfall>)> {
         let (mut measurements, mut shortfall) = (Vec::new(), None::<Shortfall>);
         for probe in mine.exercise().probes_of(&self.question) {
-            // ratios are judged, so the error asked for is theirs
+            // ratios are judged, so the error asked for is that of the ratio
             let budget = match self.budget.unwrap_or(Budget::Draws(DRAWS)) {
                 Budget::StdError(error) => Budget::StdError(error * probe.scale()),
                 other => other,
@@ -251,7 +252,7 @@ impl Wish {
             let others: Vec<String> =
                 others.iter().map(|(other, probe)| format!("{other}, “{probe}”")).collect();
             text += &format!(
-                "Those for probe {number} fit the truth of probe {}: were they made for it?\n",
+                "The draws for probe {number} fit the truth of probe {}: were they made for that probe?\n",
                 others.join("; or of ")
             );
         }
@@ -282,7 +283,8 @@ impl Wish {
         json!({
             "question": self.question, "verdict": Verdict::of(diagnosis.finding()).word(),
             "mistakes": mistakes, "compared": diagnosis.compared(), "counterexample": counterexample,
-            "probes": measured.collect::<Vec<_>>(), "seed": (self.deed == Deed::Mine).then_some(self.seed),
+            "probes": measured.collect::<Vec<_>>(),
+            "seed": (self.action == Action::Mine).then_some(self.seed),
         })
         .to_string()
     }
@@ -296,9 +298,9 @@ fn candidate_json(candidate: &Candidate) -> Value {
     })
 }
 
-/// The question's own parameters, those given by name in place of the variant's or the sheet's.
+/// The question's own parameters: those given by name, else those of the variant, else the sheet's.
 fn parameters(question: &str, variant: Option<&str>, given: &[(String, String)]) -> Result<Options> {
-    // one that has no number is told so where it is judged
+    // a question without a number gets its error message where it is judged
     let id = question.split('(').next().unwrap_or_default().trim();
     let question = super::question(id)?;
     let mut parameters = Options::default();
@@ -315,10 +317,10 @@ fn number_of(probe: &Probe, probes: &[&Probe]) -> usize {
     1 + probes.iter().position(|other| std::ptr::eq(*other, probe)).unwrap_or(0)
 }
 
-/// The probe that draws were given for, and the others whose truth they fit.
+/// The number of the probe that draws were given for, and the other probes whose truth they fit.
 type Elsewhere<'p> = (usize, Vec<(usize, &'p Probe)>);
 
-/// Draws that do not fit their probe's truth, but another's.
+/// Draws that do not fit their probe's truth, but another probe's.
 fn fitting_elsewhere<'p>(measurements: &[Measurement], probes: &[&'static Probe]) -> Vec<Elsewhere<'p>> {
     let others = measurements.iter().filter(|of| !of.is_right()).map(|of| {
         let fits = |probe: &&&'static Probe| Measurement { probe, ..*of }.is_right();
@@ -328,7 +330,7 @@ fn fitting_elsewhere<'p>(measurements: &[Measurement], probes: &[&'static Probe]
     others.filter(|(_, fitting): &Elsewhere<'_>| !fitting.is_empty()).collect()
 }
 
-/// A panic in the reader's own code, told once and with the probe: it happens on many threads at once.
+/// Reports a panic in the reader's own code once, with the probe: it happens on many threads at once.
 pub(crate) fn told_once<T>(probe: &Probe, work: impl FnOnce() -> Result<T>) -> Result<T> {
     let first = Arc::new(Mutex::new(None::<String>));
     let told = Arc::clone(&first);

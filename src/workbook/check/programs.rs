@@ -1,4 +1,4 @@
-//! What a program in another language needs: the probes in words and numbers, and a program to begin with.
+//! Output for programs in other languages: the probes in words and numbers, and a template program.
 
 use std::fmt::Write as _;
 
@@ -8,7 +8,7 @@ use crate::check::{Exercise, Given, Probe};
 use crate::error::{Error, Result};
 use crate::numbers::shortened;
 
-/// A question's probes: lines of remarks behind a #, then one line of words for each, its number first.
+/// A question's probes: comment lines with a #, then one line for each probe, its number first.
 pub fn probes(exercise: &Exercise, question: &str) -> String {
     let mut text = format!("# Question {question}, {}\n", exercise.name());
     let probes = exercise.probes_of(question);
@@ -50,7 +50,7 @@ pub fn probes_json(exercise: &Exercise, question: &str) -> String {
     lines.join("\n")
 }
 
-/// A language that there are programs in.
+/// A language with a template program.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Language {
     Python,
@@ -67,11 +67,11 @@ impl Language {
     }
 }
 
-/// A program that reads the question's probes and writes a probe's number and a draw a line, with a place for
-/// one's own estimator.
+/// A program that reads the question's probes and writes a probe's number and a draw per line, with a place
+/// for the reader's estimator.
 pub fn template(exercise: &Exercise, question: &str, language: Language) -> Result<String> {
     let Some(parts) = PARTS.iter().find(|parts| parts.exercise == exercise.id()) else {
-        return Err(Error::Usage(format!("question {question} has no program to begin with")));
+        return Err(Error::Usage(format!("question {question} has no template program")));
     };
     let (frame, part) = match language {
         Language::Python => (PYTHON, &parts.python),
@@ -101,7 +101,7 @@ pub fn template(exercise: &Exercise, question: &str, language: Language) -> Resu
     Ok(text.trim_end().into())
 }
 
-/// What differs from exercise to exercise.
+/// The parts that differ between exercises.
 struct Parts {
     exercise: &'static str,
     python: Part,
@@ -110,7 +110,7 @@ struct Parts {
 
 struct Part {
     helpers: &'static str,
-    /// As it stands, a classic mistake.
+    /// The estimator to be replaced, a classic mistake.
     estimator: &'static str,
 }
 

@@ -1,7 +1,7 @@
 """Makes extremes.csv: u, -ln(1 - u) and 1 - exp(-u), and the nearest u that is a whole number of 2^-53 with -ln(1 - u)
-there; functions as sums of two doubles, by mpmath (pip install mpmath).
+there. Function values are sums of two doubles, computed with mpmath (pip install mpmath).
 
-python3 src/figure/extremes.py > src/figure/extremes.csv
+python3 src/workbook/extremes/extremes.py > src/workbook/extremes/extremes.csv
 """
 import random
 from mpmath import exp, log, mp, mpf
@@ -17,7 +17,7 @@ def twofold(x):
 
 print("u,log_high,log_low,cdf_high,cdf_low,grid,grid_log_high,grid_log_low")
 for i in range(240):
-    # even on a logarithmic axis from 1e-18 to 1, with random last digits
+    # evenly spaced on a logarithmic axis from 1e-18 to 1, with random last digits
     u = 10 ** (-18 + 18 * (i + random.random()) / 240)
     exact = mpf(u)
     grid = max(round(u * 2.0**53), 1) / 2.0**53

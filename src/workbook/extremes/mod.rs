@@ -1,4 +1,4 @@
-//! Figures of numerical stability: where the obvious code loses its digits.
+//! Figures about numerical stability: where the obvious code loses digits.
 
 use crate::error::Result;
 use crate::estimate::Estimate;
@@ -7,15 +7,15 @@ use crate::inversion::Exponential;
 use crate::plot::{Axis, Figure, Ink, Marker, Panel, Plot, Side};
 use crate::stream::Stream;
 
-/// u, −ln(1 − u) and 1 − e^(−u) to 32 digits, and the nearest u on the grid of 2⁻⁵³ with −ln(1 − u) there, by
-/// another program; see `extremes.py`.
+/// u, −ln(1 − u) and 1 − e^(−u) to 32 digits, and the nearest u on the grid of 2⁻⁵³ with −ln(1 − u) there,
+/// computed by `extremes.py`.
 const TRUTHS: &str = include_str!("extremes.csv");
 
-/// A way to write a function, and how it is drawn.
+/// One implementation of a function, and how it is drawn.
 type Form<'a> = (&'a str, Ink, Marker, &'a dyn Fn(f64) -> f64);
 
-/// The errors of three ways to write each of −ln(1 − u) and 1 − e^(−x), in units of the last place, against
-/// the argument.
+/// Figure: the errors of three implementations of each of −ln(1 − u) and 1 − e^(−x), in units of the last
+/// place, against the argument.
 ///
 /// ```
 /// let figure = unbiased::workbook::extremes::errors_in_ulps()?;
@@ -81,7 +81,8 @@ fn ulp_panel(heading: &str, argument: &str) -> Panel {
     )
 }
 
-/// The argument and the error of `form` there, in units of the last place of the truth; `of` picks both.
+/// The argument and the error of `form` there, in units of the last place of the truth; `of` selects both
+/// from a row of the table.
 fn errors(form: impl Fn(f64) -> f64, of: impl Fn([f64; 8]) -> [f64; 3]) -> Vec<[f64; 2]> {
     let rows = TRUTHS.lines().skip(1).filter_map(|line| {
         let fields: Vec<f64> = line.split(',').map(str::parse).collect::<Result<_, _>>().ok()?;
@@ -96,8 +97,8 @@ fn errors(form: impl Fn(f64) -> f64, of: impl Fn([f64; 8]) -> [f64; 3]) -> Vec<[
     .collect()
 }
 
-/// How far the running mean of 10¹⁰ + U is from the exact mean of the same draws, relative to it: summed in
-/// f32, in f64, and as [`Estimate`] sums.
+/// Figure: the relative error of the running mean of 10¹⁰ + U, compared with the exact mean of the same
+/// draws, summed in f32, in f64, and by [`Estimate`].
 ///
 /// ```
 /// let figure = unbiased::workbook::extremes::running_mean_errors(1)?;
@@ -115,7 +116,7 @@ pub fn running_mean_errors(seed: u64) -> Result<Figure> {
     let mut points = [const { Vec::new() }; 3];
     let mut next = 10;
     for n in 1..=DRAWS {
-        // on the grid that 10¹⁰ + U has in f64, so that the exact sum is one of whole numbers
+        // on the grid that 10¹⁰ + U has in f64, so that the exact sum is an integer
         let step = (rng.uniform() * GRID).floor();
         let draw = SHIFT + step / GRID;
         exact += step as u128;
@@ -124,7 +125,7 @@ pub fn running_mean_errors(seed: u64) -> Result<Figure> {
         kept.push(draw);
         if n == next {
             let count = n as f64;
-            // how far a mean is from 10¹⁰ + (Σ steps)/(n·grid): 10¹⁰ is taken off first, which is exact
+            // the mean minus 10¹⁰ + (Σ steps)/(n·grid); 10¹⁰ is subtracted first, which is exact
             let beyond = exact as f64 / GRID / count;
             let error = |mean: f64| ((mean - SHIFT) - beyond).abs() / SHIFT;
             for (points, mean) in

@@ -1,5 +1,5 @@
-//! A question with its answer, as the key has it: on paper what settles it, on a screen all rows and
-//! figures, too.
+//! A question with its answer in the key: on paper only what settles it, on a screen all rows and figures,
+//! too.
 
 use maud::{Markup, html};
 
@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::numbers::{shortened, std_errors};
 use crate::plot::Edition;
 
-/// What the marks mean.
+/// The explanation of the marks.
 pub(super) fn legend(options: &Options) -> Markup {
     html! {
         div.legend {
@@ -35,7 +35,7 @@ pub(super) fn article(question: &'static Question, answers: &[Answer], options: 
     let (command, remark) = options.command(question, answers.iter());
     let rows: Vec<&Answer> = answers.iter().filter(|answer| numbered(answer)).collect();
     let figures: Vec<_> = answers.iter().flat_map(|answer| answer.figures(Edition::Solution)).collect();
-    // one is enough on paper: beside the text, or below where it is as wide
+    // on paper one figure is enough: beside the text, or below it if it is as wide
     let (first, others) = figures.split_at(figures.len().min(1));
     let (aside, below): (Vec<_>, Vec<_>) = first.iter().partition(|figure| narrow(figure));
     Ok(html! {
@@ -74,18 +74,18 @@ pub(super) fn article(question: &'static Question, answers: &[Answer], options: 
     })
 }
 
-/// The exercise whose last question this is.
+/// The exercise for which this is the last question.
 fn asked_last(question: &Question) -> Option<&'static Exercise> {
     let exercise = exercise(question.id).ok()?;
     exercise.questions().last().filter(|last| *last == question.id).map(|_| exercise)
 }
 
-/// Whether it is a row of numbers.
+/// Whether the row has numbers.
 fn numbered(answer: &Answer) -> bool {
     answer.found().is_some() || answer.exact().is_some()
 }
 
-/// For each part of the question the first row that is checked.
+/// The first checked row for each part of the question.
 fn settling<'a>(rows: &[&'a Answer]) -> Vec<&'a Answer> {
     let mut settling: Vec<&Answer> = Vec::new();
     for row in rows.iter().filter(|row| row.kind() == super::super::Kind::Answer) {
@@ -96,7 +96,7 @@ fn settling<'a>(rows: &[&'a Answer]) -> Vec<&'a Answer> {
     settling
 }
 
-/// A row in words: `(i) P(N = 0): exactly 0.2, estimated 0.20002 ± 0.00078 ✓`
+/// A row in one line: `(i) P(N = 0): exactly 0.2, estimated 0.20002 ± 0.00078 ✓`
 fn in_a_line(question: &Question, row: &Answer) -> Markup {
     html! {
         p.check {
@@ -110,7 +110,7 @@ fn in_a_line(question: &Question, row: &Answer) -> Markup {
     }
 }
 
-/// `(i) ` of a row of 5.1(i)
+/// `(i) ` for a row of 5.1(i)
 fn part(question: &Question, row: &Answer) -> String {
     match row.question().strip_prefix(question.id) {
         Some("") | None => String::new(),

@@ -1,5 +1,4 @@
-//! The worksheet as pages, self-contained each: the sheet to be filled in, its answer key, and what stands
-//! beside them.
+//! The worksheet as self-contained pages: the sheet to be filled in, its answer key, and the appendices.
 
 mod key;
 mod sheet;
@@ -33,7 +32,7 @@ pub(super) fn sheet(answered: &Answered, options: &Options) -> Result<String> {
     ))
 }
 
-/// `solution.html`: the answer key, with links to the pages beside it.
+/// `solution.html`: the answer key, with links to the appendices' pages.
 pub(super) fn key(answered: &Answered, appendices: &[Appendix], options: &Options) -> Result<String> {
     Ok(whole(
         "key",
@@ -45,8 +44,8 @@ pub(super) fn key(answered: &Answered, appendices: &[Appendix], options: &Option
             }
             (questions(answered, options)?)
             @if !appendices.is_empty() {
-                nav aria-label="Beside the questions" {
-                    h2 { "Beside the questions" }
+                nav aria-label="Appendices" {
+                    h2 { "Appendices" }
                     ul { @for appendix in appendices {
                         li { a href={ (appendix.example) ".html" } { (appendix.title) } }
                     } }
@@ -59,7 +58,7 @@ pub(super) fn key(answered: &Answered, appendices: &[Appendix], options: &Option
     ))
 }
 
-/// `trade.html`, `extremes.html`: what stands beside the questions, a page each.
+/// `trade.html`, `extremes.html`: one page per appendix.
 pub(super) fn beside(appendix: &Appendix) -> String {
     whole(
         "beside",
@@ -77,7 +76,7 @@ pub(super) fn beside(appendix: &Appendix) -> String {
     )
 }
 
-/// A page: no script, nothing loaded from elsewhere.
+/// A complete page, without scripts or anything loaded from elsewhere.
 fn whole(class: &str, title: &str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
@@ -108,12 +107,12 @@ fn questions(answered: &Answered, options: &Options) -> Result<Markup> {
     })
 }
 
-/// A name that HTML, CSS and XML all take.
+/// An id that is valid in HTML, CSS and XML.
 fn id_of(question: &Question) -> String {
     format!("q-{}", question.id.replace('.', "-"))
 }
 
-/// The articles under the headings of their sections.
+/// The articles, grouped under the headings of their sections.
 fn by_section(
     answered: &Answered,
     article: impl Fn(&'static Question, &[Answer]) -> Result<Markup>,
@@ -143,7 +142,7 @@ fn heading(section: &str) -> String {
     format!("{section} {name}").trim().to_owned()
 }
 
-/// A figure with its title, its ids made names of their own on the page.
+/// A figure with its title; its ids are made unique on the page.
 fn shown(figure: &Figure) -> Markup {
     let name = figure.name();
     let svg = figure.svg().replace(&format!("\"{name}-"), &format!("\"figure-{name}-"));
@@ -153,7 +152,7 @@ fn shown(figure: &Figure) -> Markup {
     } }
 }
 
-/// Whether two of them fit side by side.
+/// Whether two such figures fit side by side.
 fn narrow(figure: &Figure) -> bool {
     let width = figure.svg().split(" width=\"").nth(1).and_then(|rest| rest.split("mm\"").next());
     width.and_then(|width| width.parse().ok()).is_some_and(|width: f64| width < 100.0)

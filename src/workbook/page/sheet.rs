@@ -7,7 +7,7 @@ use super::text::prose;
 use crate::error::Result;
 use crate::plot::Edition;
 
-/// How many ruled lines an answer by hand takes; none where all of it is drawn.
+/// The number of ruled lines for an answer by hand; none if the answer is drawn.
 fn lines(id: &str) -> usize {
     match id {
         "4.1" | "4.2" => 0,
@@ -20,7 +20,7 @@ fn lines(id: &str) -> usize {
     }
 }
 
-/// Whether its figure is to be drawn into, by hand: as large as the paper allows.
+/// Whether the figure is drawn into by hand, and so as large as the paper allows.
 fn drawn_into(id: &str) -> bool {
     matches!(id, "4.1" | "4.2")
 }

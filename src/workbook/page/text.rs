@@ -5,7 +5,7 @@ use pulldown_latex::{Parser, RenderConfig, Storage, push_mathml};
 
 use crate::error::{Error, Result};
 
-/// Plain text with its x_i as subscripts, and its x^n and x^(…) as superscripts.
+/// Plain text as HTML, with x_i as subscripts, and x^n and x^(…) as superscripts.
 pub(super) fn prose(text: &str) -> Markup {
     let mut html = String::new();
     let mut rest = text;
@@ -29,13 +29,13 @@ pub(super) fn prose(text: &str) -> Markup {
     PreEscaped(html + &escaped(rest))
 }
 
-/// Whether it is shifted with the mark before it: ², which is numeric, has a place of its own.
+/// Whether a character belongs to the sub- or superscript; not ², which is numeric but a superscript itself.
 fn shifts(c: char) -> bool {
     c.is_alphabetic() || c.is_ascii_digit()
 }
 
-/// Whether a `_` after this stands in a name of a program's, such as `ln_1p`: a letter with a subscript
-/// stands alone.
+/// Whether a `_` after this belongs to a program's name such as `ln_1p`: a letter with a subscript stands
+/// alone.
 fn ends_in_a_name(before: &str) -> bool {
     let reversed = || before.chars().rev();
     let letters = reversed().take_while(char::is_ascii_alphabetic).count();
@@ -46,7 +46,7 @@ fn escaped(text: &str) -> String {
     html! { (text) }.into_string()
 }
 
-/// Digits in threes.
+/// A count with its digits in groups of three.
 pub(super) fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let thirds = digits.bytes().enumerate().map(|(i, digit)| {
@@ -56,7 +56,7 @@ pub(super) fn grouped(count: u64) -> String {
     thirds.collect()
 }
 
-/// A displayed formula, which may break where `\quad` parts it and before each =.
+/// A displayed formula, which may be broken at `\quad` and before each relation.
 pub(super) fn formula(latex: &str) -> Result<Markup> {
     let mut parts = Vec::new();
     for part in pieces(latex, Cut::Quads) {
@@ -78,10 +78,11 @@ enum Cut {
     Relations,
 }
 
-/// What comes before a relation begins a line; `{}` gives it the space of one that stands between two.
+/// Relations before which a formula may be broken. The new piece starts with `{}`, which keeps the space
+/// around the relation.
 const RELATIONS: [&str; 7] = ["=", r"\approx", r"\to", r"\xrightarrow", r"\propto", r"\le", r"\ge"];
 
-/// LaTeX in pieces, cut outside of all brackets.
+/// LaTeX split at `cut`, outside of all brackets.
 fn pieces(latex: &str, cut: Cut) -> Vec<String> {
     let mut pieces = vec![String::new()];
     let mut depth = 0i32;
@@ -121,7 +122,7 @@ fn pieces(latex: &str, cut: Cut) -> Vec<String> {
 fn mathml(latex: &str) -> Result<String> {
     let storage = Storage::new();
     let failed = |reason: String| Error::Draft { what: format!("the formula {latex}"), reason };
-    // pulldown-latex puts errors into its output; they are looked for first
+    // pulldown-latex writes errors into its output, so look for them first
     if let Some(Err(error)) = Parser::new(latex, &storage).find(|event| event.is_err()) {
         return Err(failed(error.to_string()));
     }

@@ -8,9 +8,9 @@ use super::programs::Language;
 use crate::error::{Error, Result};
 use crate::run::Budget;
 
-/// What is to be judged or told.
+/// What is to be judged or printed.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Deed {
+pub(super) enum Action {
     Mine,
     Help,
     Probes,
@@ -22,9 +22,9 @@ pub(super) enum Deed {
 }
 
 /// What the command line asks for.
-pub(super) struct Wish {
+pub(super) struct Arguments {
     pub question: String,
-    pub deed: Deed,
+    pub action: Action,
     pub own: Vec<(String, String)>,
     pub variant: Option<String>,
     pub digits: Option<u32>,
@@ -35,15 +35,15 @@ pub(super) struct Wish {
     pub exit_code: bool,
 }
 
-impl Wish {
+impl Arguments {
     pub fn read(question: &str) -> Result<Self> {
         Self::parse(Parser::from_env(), question)
     }
 
     fn parse(mut line: Parser, question: &str) -> Result<Self> {
-        let mut wish = Self {
+        let mut arguments = Self {
             question: question.into(),
-            deed: Deed::Mine,
+            action: Action::Mine,
             own: Vec::new(),
             variant: None,
             digits: None,
@@ -54,30 +54,30 @@ impl Wish {
             exit_code: false,
         };
         let (mut probe, mut about_estimator) = (None, None);
-        let mut deeds: Vec<(&'static str, Deed)> = Vec::new();
+        let mut actions: Vec<(&'static str, Action)> = Vec::new();
         while let Some(argument) = line.next().map_err(options::usage)? {
             let name = match argument {
                 Arg::Short('h') | Arg::Long("help") => {
-                    wish.deed = Deed::Help;
-                    return Ok(wish);
+                    arguments.action = Action::Help;
+                    return Ok(arguments);
                 }
                 Arg::Long(name) => name.to_owned(),
                 other => return Err(options::usage(other.unexpected())),
             };
             match name.as_str() {
-                "question" => wish.question = options::text(&mut line, "--question")?,
-                "json" => wish.json = true,
-                "csv" => wish.csv = true,
-                "exit-code" => wish.exit_code = true,
-                "probes" => deeds.push(("--probes", Deed::Probes)),
-                "mistakes" => deeds.push(("--mistakes", Deed::Mistakes)),
+                "question" => arguments.question = options::text(&mut line, "--question")?,
+                "json" => arguments.json = true,
+                "csv" => arguments.csv = true,
+                "exit-code" => arguments.exit_code = true,
+                "probes" => actions.push(("--probes", Action::Probes)),
+                "mistakes" => actions.push(("--mistakes", Action::Mistakes)),
                 "template" => {
                     let language = Language::read(&options::text(&mut line, "--template")?)?;
-                    deeds.push(("--template", Deed::Template(language)));
+                    actions.push(("--template", Action::Template(language)));
                 }
-                "answer" => deeds.push(("--answer", Deed::Answer(options::text(&mut line, "--answer")?))),
-                "variant" => wish.variant = Some(options::text(&mut line, "--variant")?),
-                "digits" => wish.digits = Some(options::count(&mut line, "--digits")?.min(15) as u32),
+                "answer" => actions.push(("--answer", Action::Answer(options::text(&mut line, "--answer")?))),
+                "variant" => arguments.variant = Some(options::text(&mut line, "--variant")?),
+                "digits" => arguments.digits = Some(options::count(&mut line, "--digits")?.min(15) as u32),
                 "draws-from" => {
                     let files: Vec<_> = line.values().map_err(options::usage)?.collect();
                     let text = |file: std::ffi::OsString| file.into_string().ok();
@@ -85,81 +85,83 @@ impl Wish {
                     let files =
                         files.ok_or_else(|| Error::Usage("the value of --draws-from is not text".into()))?;
                     let sources = files.iter().map(|file| Source::read(file)).collect();
-                    deeds.push(("--draws-from", Deed::Draws(sources)));
+                    actions.push(("--draws-from", Action::Draws(sources)));
                 }
                 "probe" => probe = Some(options::count(&mut line, "--probe")? as usize),
                 "answers" => {
                     let answers = Some(options::text(&mut line, "--answers")?);
-                    deeds.push(("--answers", Deed::Class { answers, draws: None }));
+                    actions.push(("--answers", Action::Class { answers, draws: None }));
                 }
                 "draws-in" => {
                     let draws = Some(options::text(&mut line, "--draws-in")?);
-                    deeds.push(("--draws-in", Deed::Class { answers: None, draws }));
+                    actions.push(("--draws-in", Action::Class { answers: None, draws }));
                 }
                 "draws" | "error" | "seconds" => {
-                    options::read_budget(&mut line, &name, &mut wish.budget)?;
+                    options::read_budget(&mut line, &name, &mut arguments.budget)?;
                     about_estimator = Some(format!("--{name}"));
                 }
                 "seed" => {
                     about_estimator = Some("--seed".into());
-                    wish.seed = options::whole(&mut line, "--seed")?;
+                    arguments.seed = options::whole(&mut line, "--seed")?;
                 }
                 _ => {
                     options::parameter(questions(), &name, &name)?;
                     let value = options::text(&mut line, &format!("--{name}"))?;
-                    wish.own.push((name, value));
+                    arguments.own.push((name, value));
                 }
             }
         }
-        wish.deed = one_of(deeds, about_estimator.as_deref())?;
-        match (&mut wish.deed, probe) {
-            (Deed::Draws(sources), Some(probe)) => match &mut sources[..] {
+        arguments.action = one_of(actions, about_estimator.as_deref())?;
+        match (&mut arguments.action, probe) {
+            (Action::Draws(sources), Some(probe)) => match &mut sources[..] {
                 [Source { probe: unnamed @ None, .. }] => *unnamed = Some(probe),
-                _ => return Err(Error::Usage("--probe names the probe of one file of draws".into())),
+                _ => return Err(Error::Usage("--probe works with one file of draws only".into())),
             },
             (_, Some(_)) => {
-                return Err(Error::Usage("--probe says what the draws of --draws-from are for".into()));
+                return Err(Error::Usage("--probe needs --draws-from".into()));
             }
             _ => {}
         }
-        let judged = matches!(wish.deed, Deed::Answer(_) | Deed::Class { .. });
-        if let (false, Some((name, _))) = (judged, wish.own.first()) {
+        let judged = matches!(arguments.action, Action::Answer(_) | Action::Class { .. });
+        if let (false, Some((name, _))) = (judged, arguments.own.first()) {
             return Err(Error::Usage(format!(
-                "--{name} is about a number worked out by hand: it goes with --answer or --answers"
+                "--{name} is for numbers worked out by hand: it needs --answer or --answers"
             )));
         }
-        let beside = [("digits", wish.digits.is_some()), ("variant", wish.variant.is_some())];
+        let beside = [("digits", arguments.digits.is_some()), ("variant", arguments.variant.is_some())];
         if let (false, Some((name, _))) = (judged, beside.iter().find(|(_, given)| *given)) {
-            return Err(Error::Usage(format!("--{name} goes with --answer or --answers")));
+            return Err(Error::Usage(format!("--{name} needs --answer or --answers")));
         }
-        if wish.csv && (wish.json || !matches!(wish.deed, Deed::Class { .. })) {
-            return Err(Error::Usage("--csv is a form of the report on a class, and --json another".into()));
+        if arguments.csv && (arguments.json || !matches!(arguments.action, Action::Class { .. })) {
+            return Err(Error::Usage("--csv needs --answers or --draws-in, and excludes --json".into()));
         }
-        Ok(wish)
+        Ok(arguments)
     }
 }
 
-/// The one thing that is to be done; a class has answers, draws or both.
-fn one_of(deeds: Vec<(&'static str, Deed)>, about_estimator: Option<&str>) -> Result<Deed> {
-    let mut given = None::<(&'static str, Deed)>;
-    for (name, deed) in deeds {
-        given = Some(match (given, deed) {
-            (None, deed) => (name, deed),
-            // of the same option the last one counts
-            (Some((before, _)), deed) if before == name => (name, deed),
-            (Some((_, Deed::Class { answers, draws })), Deed::Class { answers: more, draws: others }) => {
-                (name, Deed::Class { answers: more.or(answers), draws: others.or(draws) })
+/// The one action asked for; for a class, answers, draws or both.
+fn one_of(actions: Vec<(&'static str, Action)>, about_estimator: Option<&str>) -> Result<Action> {
+    let mut given = None::<(&'static str, Action)>;
+    for (name, action) in actions {
+        given = Some(match (given, action) {
+            (None, action) => (name, action),
+            // if the same option is given again, the last one counts
+            (Some((before, _)), action) if before == name => (name, action),
+            (Some((_, Action::Class { answers, draws })), Action::Class { answers: more, draws: others }) => {
+                (name, Action::Class { answers: more.or(answers), draws: others.or(draws) })
             }
             (Some((before, _)), _) => {
-                return Err(Error::Usage(format!("{before} has no use for {name}: give one of them")));
+                return Err(Error::Usage(format!(
+                    "{before} and {name} cannot be combined: give one of them"
+                )));
             }
         });
     }
     match (given, about_estimator) {
         (Some((name, _)), Some(other)) => {
-            Err(Error::Usage(format!("{name} has no use for {other}: give one of them")))
+            Err(Error::Usage(format!("{name} and {other} cannot be combined: give one of them")))
         }
-        (given, _) => Ok(given.map_or(Deed::Mine, |(_, deed)| deed)),
+        (given, _) => Ok(given.map_or(Action::Mine, |(_, action)| action)),
     }
 }
 
@@ -183,12 +185,12 @@ Options
     --seconds S          instead: draws for S seconds a probe
     --seed S             their seed (1)
     --answer TEXT        judge this number, fraction or expression: 1.386, 16/125, 2ρ/π
-    --digits N           with so many significant digits at least
+    --digits N           require at least N significant digits
     --albedo X, …        the question's own parameters, as in its example
-    --variant NAME       or all of those that the variant of this name has
+    --variant NAME       or the parameters of the variant of this name
     --probes             describe the question's probes, for people and programs
     --mistakes           what each classic mistake does to each probe: its mean over the truth
-    --template LANG      a program to begin with: python or cpp
+    --template LANG      a program to fill in: python or cpp
     --draws-from FILE    judge these draws (- for standard input), one a line, or a probe's number
                          and a draw a line; or several files: 1=a.txt 2=b.txt
     --probe N            which probe the draws of one file are for (1)
