@@ -6,6 +6,7 @@
 
 mod common;
 
+use common::{gauss, howell_parallel, howell_perpendicular};
 use std::f64::consts::{FRAC_1_PI, FRAC_1_SQRT_2, PI};
 
 use glam::DVec3;
@@ -458,30 +459,6 @@ fn touching_the_cube_hides_nothing() {
 // ---- form factors
 // --------------------------------------------------------------------------------------------------
 
-/// Nodes and weights of Gauss and Legendre on [0, 1], by Newton's iteration.
-fn gauss(n: usize) -> Vec<(f64, f64)> {
-    (0..n)
-        .map(|i| {
-            let mut x = ((i as f64 + 0.75) / (n as f64 + 0.5) * PI).cos();
-            let mut slope = 0.0;
-            for _ in 0..100 {
-                let (mut p, mut before) = (x, 1.0);
-                for k in 2..=n {
-                    let k = k as f64;
-                    (p, before) = (((2.0 * k - 1.0) * x * p - (k - 1.0) * before) / k, p);
-                }
-                slope = n as f64 * (x * p - before) / (x * x - 1.0);
-                let step = p / slope;
-                x -= step;
-                if step.abs() < 1e-16 {
-                    break;
-                }
-            }
-            (0.5 * (x + 1.0), 1.0 / ((1.0 - x * x) * slope * slope))
-        })
-        .collect()
-}
-
 /// ∫ cos θ cos θ′/(πr²) dA over a triangle given as seen from the point, all of it above the horizon of `n`.
 fn by_quadrature([a, b, c]: [DVec3; 3], n: DVec3, rule: &[(f64, f64)]) -> f64 {
     let (e, f) = (b - a, c - b);
@@ -517,21 +494,6 @@ fn cut_and_integrated(mut corners: [DVec3; 3], n: DVec3, rule: &[(f64, f64)]) ->
 
 fn rectangle(x: [f64; 2], y: [f64; 2], z: f64) -> [DVec3; 4] {
     [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]].map(|[x, y]| DVec3::new(x, y, z))
-}
-
-/// Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, B-3: an element under the corner of
-/// a parallel rectangle a × b at the distance c.
-fn howell_parallel(a: f64, b: f64, c: f64) -> f64 {
-    let (x, y) = (a / c, b / c);
-    let (sx, sy) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
-    (x / sx * (y / sx).atan() + y / sy * (x / sy).atan()) / (2.0 * PI)
-}
-
-/// B-4: an element on a plane at right angles to the rectangle's, which starts above the element: a away from
-/// the element's plane, b along it, c high.
-fn howell_perpendicular(a: f64, b: f64, c: f64) -> f64 {
-    let s = a.hypot(c);
-    ((b / c).atan() - c / s * (b / s).atan()) / (2.0 * PI)
 }
 
 #[test]
@@ -714,7 +676,7 @@ fn form_factors_are_probabilities() {
         let budget = unbiased::Budget::Draws(1_200_000);
         let found = unbiased::estimate(&hits, budget, common::seed(408 + i as u64)).unwrap();
         let std_error = (p * (1.0 - p) / 1.2e6).sqrt();
-        assert!((found.mean() - p).abs() <= 8.0 * std_error, "{} for {p}", found.mean());
+        assert!((found.mean() - p).abs() <= common::deviations(8.0) * std_error, "{} for {p}", found.mean());
     }
 }
 

@@ -8,7 +8,7 @@ mod common;
 
 use std::f64::consts::{PI, TAU};
 
-use common::{Stuck, config};
+use common::{NEARLY_ONE, Stuck, config, probability, ulps, ulps_off_unit};
 use glam::DVec3;
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -18,12 +18,9 @@ use unbiased::lambertian::hemisphere::{Direction, Hemisphere};
 use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
 use unbiased::paths::room::{BoxRoom, Face, Scene, Vertex, form_factor, nearest_hit, visible};
 use unbiased::paths::{Bounces, FindLight, Paths};
-use unbiased::rectangle::{Integrand, Rectangle};
+use unbiased::rectangle::Rectangle;
 use unbiased::roulette::{LightModel, Roulette};
 use unbiased::{Budget, Density, Error, Estimate, Estimator, Run, Stream, estimate, f_over_p, from_fn};
-
-/// 1 − 2⁻⁵³, the largest number below 1.
-const NEARLY_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
 
 /// Any bits, numbers of every size, and the edges themselves with their neighbours.
 fn any_number() -> impl Strategy<Value = f64> {
@@ -35,36 +32,6 @@ fn any_number() -> impl Strategy<Value = f64> {
         -3.0..3.0f64,
         select(neighbours.collect::<Vec<f64>>()),
     ]
-}
-
-/// Any bits in [0, 1]: all sizes alike, anywhere, near 1, near ½, and the ends.
-fn probability() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        (0..=1f64.to_bits()).prop_map(f64::from_bits),
-        0.0..=1.0f64,
-        (0.0..54.0f64).prop_map(|power| 1.0 - 2f64.powf(-power)),
-        (1.0..54.0f64, any::<bool>()).prop_map(|(power, up)| {
-            let off = 2f64.powf(-power);
-            if up { 0.5 + off } else { 0.5 - off }
-        }),
-        select(vec![0.0, f64::from_bits(1), 0.5, NEARLY_ONE, 1.0]),
-    ]
-}
-
-fn ulps(a: f64, b: f64) -> u64 {
-    let rank = |x: f64| if x.is_sign_negative() { -(x.abs().to_bits() as i64) } else { x.to_bits() as i64 };
-    if a.is_nan() || b.is_nan() { u64::MAX } else { rank(a).abs_diff(rank(b)) }
-}
-
-/// How far from 1 the length of a direction is, in ulp of 1.
-fn ulps_off_unit(direction: &Direction) -> f64 {
-    // |v|² − 1 = Σ (x² − share) with each square and its rounding
-    let mut terms = vec![-1.0];
-    for x in direction.vector().to_array() {
-        terms.extend([x * x, x.mul_add(x, -(x * x))]);
-    }
-    terms.sort_by(|a: &f64, b: &f64| b.abs().total_cmp(&a.abs()));
-    0.5 * terms.iter().sum::<f64>().abs() / f64::EPSILON
 }
 
 proptest! {
@@ -575,49 +542,4 @@ fn stuck_generators_give_finite_samples() {
         0
     );
     assert!(Roulette::new(f64::from_bits(1)).unwrap().continues(&mut Stuck(0)));
-}
-
-#[test]
-fn stuck_streams_give_finite_draws() {
-    let surface = Lambertian::new(0.61).unwrap();
-    let (square, model) = (Rectangle::WORKSHEET, LightModel::new(0.8, 0.5).unwrap());
-    let mut estimators: Vec<(String, Box<dyn Estimator>)> = vec![
-        ("exponential".into(), Box::new(Exponential::new(0.37).unwrap())),
-        ("bounces".into(), Box::new(Roulette::new(NEARLY_ONE).unwrap().bounces().by_inversion().unwrap())),
-        ("coins".into(), Box::new(Roulette::new(NEARLY_ONE).unwrap().bounces().by_simulation().unwrap())),
-        ("wrapped".into(), Box::new(Roulette::new(1e-300).unwrap().wrap(from_fn(|rng| rng.uniform())))),
-        ("roulette".into(), Box::new(model.roulette(0.9).unwrap())),
-        ("truncated".into(), Box::new(model.truncated(20).unwrap())),
-    ];
-    for f in Integrand::ALL {
-        let at = move |x: f64, y: f64| f.at(x, y);
-        estimators
-            .push((format!("{f}, ratio"), Box::new(f_over_p(move |&[x, y]: &[f64; 2]| f.at(x, y), square))));
-        estimators.push((format!("{f}, independent"), Box::new(square.independent(at))));
-        estimators.push((format!("{f}, all pairs"), Box::new(square.all_pairs(at, 5).unwrap())));
-        estimators.push((format!("{f}, jittered"), Box::new(square.jittered(at, 5).unwrap())));
-        estimators.push((format!("{f}, Sobol"), Box::new(square.sobol(at, 16).unwrap())));
-    }
-    for a in [-1.99, -1.0, 0.0, 300.0] {
-        let light = CosinePower::new(a).unwrap();
-        let incoming = move |direction: &Direction| light.incoming(direction);
-        estimators.push((format!("cos^{a}, uniform"), Box::new(surface.uniform_estimator(incoming))));
-        estimators.push((format!("cos^{a}, cosine"), Box::new(surface.cosine_estimator(incoming))));
-        for hemisphere in Hemisphere::ALL {
-            let general = surface.estimator(incoming, hemisphere);
-            estimators.push((format!("cos^{a}, f/p, {hemisphere:?}"), Box::new(general)));
-        }
-    }
-    for word in words() {
-        let u = (word >> 11) as f64 * 2f64.powi(-53);
-        // stuck for 100 numbers; then the one that ends every path
-        let mut script = vec![u; 100];
-        script.resize(200, NEARLY_ONE);
-        for (name, estimator) in &estimators {
-            let mut rng = Stream::scripted(&script);
-            let draw = estimator.draw(&mut rng);
-            assert!(draw.is_finite() && draw >= -64.0, "{name}: {draw:?} of u = {u:?}");
-            assert!(rng.random_numbers() <= 200, "{name}: u = {u:?}");
-        }
-    }
 }

@@ -1,26 +1,29 @@
 //! Section 2: is every estimator over a rectangle unbiased, with the variance it should have, and are the
 //! mistakes seen?
 //!
-//! False alarms: a z-test at 7 standard errors is wrong with probability 2.6e-12, a DKW band at α = 1e-12
-//! with 1e-12. This file holds about 130 of the first and 22 of the second: less than 4e-10 in all, for fresh
-//! seeds; with the fixed ones, never. What a test can see is said beside it.
+//! A z-test at 7 standard errors is wrong with probability 2.6e-12, a DKW band with 1e-12. What a test can see is
+//! said beside it. Means, variances, costs and coverage are those of tests/estimators.rs.
 
 mod common;
 
-use std::convert::Infallible;
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex};
 
 use approx::assert_relative_eq;
-use common::{config, seed};
+use common::{Stuck, any_bits, config, net_variance_of_xy, seed};
 use proptest::prelude::*;
 use rand::TryRng;
 use rand::distr::Distribution;
 use unbiased::rectangle::{Integrand, Rectangle};
-use unbiased::{Budget, Density, Error, Estimate, Estimator, Run, Stream, estimate, f_over_p, from_fn};
+use unbiased::{Budget, Density, Error, Estimate, Estimator, Stream, estimate, f_over_p, from_fn};
 
 const SHEET: Rectangle = Rectangle::WORKSHEET;
 const Z: f64 = 7.0;
+
+/// [`Z`], for a comparison that a right estimator passes.
+fn z() -> f64 {
+    common::deviations(Z)
+}
 
 fn rectangle(x: [f64; 2], y: [f64; 2]) -> Rectangle {
     Rectangle::new(x, y).unwrap()
@@ -40,7 +43,7 @@ fn run(estimator: &(impl Estimator + ?Sized), draws: u64, seed: u64) -> Estimate
 fn assert_mean(what: &str, estimator: &(impl Estimator + ?Sized), truth: f64, draws: u64, seed: u64) {
     let estimate = run(estimator, draws, seed);
     let z = estimate.z(truth).unwrap();
-    assert!(z.abs() <= Z, "{what}: {estimate} against {truth}, z = {z}");
+    assert!(z.abs() <= self::z(), "{what}: {estimate} against {truth}, z = {z}");
 }
 
 /// The same for the variance: (draw − mean)² is itself an unbiased estimate of it. Seen is a relative bias of
@@ -184,17 +187,9 @@ fn ways(r: Rectangle) -> Vec<(&'static str, Make)> {
     ]
 }
 
-/// sup |Fₙ − F| ≤ √(ln(2/α)/2n) for uniform numbers, α = 1e-12, whatever n (Dvoretzky, Kiefer & Wolfowitz;
-/// Massart 1990). With 50,000 points the band is 0.017: a cdf off by 0.034 anywhere is seen.
-fn assert_uniform(what: &str, mut points: Vec<f64>) {
-    points.sort_by(f64::total_cmp);
-    let n = points.len() as f64;
-    let off = points
-        .iter()
-        .enumerate()
-        .map(|(i, u)| (u - i as f64 / n).abs().max((u - (i + 1) as f64 / n).abs()))
-        .fold(0.0, f64::max);
-    let band = ((2.0 / 1e-12f64).ln() / (2.0 * n)).sqrt();
+/// With 50,000 points the band is 0.017: a cdf off by 0.034 anywhere is seen.
+fn assert_uniform(what: &str, points: Vec<f64>) {
+    let (off, band) = common::dkw(points, |u| u);
     assert!(off <= band, "{what}: {off} outside the band {band}");
 }
 
@@ -308,26 +303,6 @@ fn a_scramble_reaches_every_value_once() {
     }
 }
 
-/// A generator of ones only: U = 1 − 2⁻⁵³, as far right as a point gets.
-struct Ones;
-
-impl TryRng for Ones {
-    type Error = Infallible;
-
-    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
-        Ok(u32::MAX)
-    }
-
-    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
-        Ok(u64::MAX)
-    }
-
-    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
-        bytes.fill(u8::MAX);
-        Ok(())
-    }
-}
-
 /// The ends themselves are drawn or missed by a rounding at most.
 #[test]
 fn points_never_leave_the_rectangle_by_rounding() {
@@ -335,7 +310,7 @@ fn points_never_leave_the_rectangle_by_rounding() {
         let a = f64::from(i) * 1.37e-3;
         let b = a + f64::from(i % 97 + 1) * 0.013;
         let r = rectangle([a, b], [-b, -a]);
-        let [x, y] = r.sample(&mut Ones);
+        let [x, y] = r.sample(&mut Stuck(u64::MAX));
         assert!(x <= b && y <= -a && r.pdf(&[x, y]) > 0.0, "[{a:?}, {b:?}]");
         assert!(b - x <= 4.0 * f64::EPSILON * b && -a - y <= 4.0 * f64::EPSILON * b, "[{a:?}, {b:?}]");
     }
@@ -500,27 +475,6 @@ fn integrands_are_what_they_say() {
     assert_eq!(format!("{}", Integrand::Paraboloid), "x² + y²");
 }
 
-/// Mean and variance of A f(X, Y). Seen: a bias of 14σ/1000 (paraboloid on the sheet: 0.9 %), and one of the
-/// variance of about 2 %.
-#[test]
-fn independent_pairs_have_the_exact_mean_and_variance() {
-    let mut at = 200;
-    for (name, r) in
-        [("sheet", SHEET), ("offset", offset()), ("holds the disc", rectangle([-2.5, 2.6], [-3.0, 2.2]))]
-    {
-        for f in Integrand::ALL {
-            let (Some(mean), Some(variance)) = (f.integral(&r), f.variance(&r)) else { continue };
-            if variance == 0.0 || variance.is_infinite() {
-                continue;
-            }
-            let estimator = r.independent(|x, y| f.at(x, y));
-            assert_mean(&format!("{f} on {name}"), &estimator, mean, 1_000_000, seed(at));
-            assert_variance(&format!("{f} on {name}"), &estimator, mean, variance, 1_000_000, seed(at + 1));
-            at += 2;
-        }
-    }
-}
-
 /// 1/r has no variance on the sheet's square, so no z-test holds for it; min(1/r, M) does have one, and its
 /// mean is short of 1/r's by ∫∫ (1/r − M) over the disc r < 1/M, π/M: what clamping "fireflies" costs. Seen:
 /// 14 × 19/2000 = 0.13, at M = 10 a third of the 0.314.
@@ -530,7 +484,7 @@ fn the_inverse_distance_has_its_mean_and_clamping_it_is_biased() {
     for clamp in [2.0, 10.0] {
         let clamped = SHEET.independent(|x, y| Integrand::InverseDistance.at(x, y).min(clamp));
         let estimate = run(&clamped, 4_000_000, seed(240));
-        assert!(estimate.z(truth - PI / clamp).unwrap().abs() <= Z, "{estimate}");
+        assert!(estimate.z(truth - PI / clamp).unwrap().abs() <= z(), "{estimate}");
         assert!(estimate.z(truth).unwrap() < -Z, "{estimate}");
     }
     // where the origin is far, the variance is finite and the estimate can be tested as it is
@@ -553,27 +507,6 @@ fn f_over_p_and_the_simplified_estimator_are_the_same() {
     }
 }
 
-/// Mean and variance of all n² pairs, exactly. Seen: 14 standard errors, at 100,000 draws 14/316 = 4 % of a
-/// draw's σ, and some 10 % of the variance: the 32 pairs of the same numbers would have 29 % more for the
-/// Gaussian, and A²σ²/n² 32 times less.
-#[test]
-fn all_pairs_have_the_exact_mean_and_variance() {
-    let rows = [
-        (SHEET, Integrand::Gaussian, 32),
-        (SHEET, Integrand::Paraboloid, 32),
-        (SHEET, Integrand::Disc, 8),
-        (offset(), Integrand::Product, 3),
-        (offset(), Integrand::Gaussian, 2),
-    ];
-    for (i, (r, f, n)) in rows.into_iter().enumerate() {
-        let (mean, variance) = (f.integral(&r).unwrap(), f.all_pairs_variance(&r, n).unwrap());
-        let estimator = r.all_pairs(|x, y| f.at(x, y), n).unwrap();
-        let what = format!("{n}² pairs of {f}");
-        assert_mean(&what, &estimator, mean, 100_000, seed(260 + 2 * i as u64));
-        assert_variance(&what, &estimator, mean, variance, 100_000, seed(261 + 2 * i as u64));
-    }
-}
-
 /// On the sheet's square: what the worksheet's page says of n = 32.
 #[test]
 fn the_worksheets_numbers_come_out() {
@@ -582,113 +515,6 @@ fn the_worksheets_numbers_come_out() {
     assert!(to_four(Integrand::Gaussian.all_pairs_variance(&SHEET, 32).unwrap(), 0.3732));
     assert!(to_four(Integrand::Paraboloid.variance(&SHEET).unwrap() / 32.0, 22.756));
     assert!(to_four(Integrand::Paraboloid.all_pairs_variance(&SHEET, 32).unwrap(), 22.756));
-}
-
-/// Jittered xy in closed form: within a cell of w_c × h_c about (x̄, ȳ), Var XY = x̄² h_c²/12 + ȳ² w_c²/12 +
-/// w_c² h_c²/144, and Σ x̄² over the columns is s (x̄² + (w² − w_c²)/12). Seen: 10 % of the variance; without
-/// jitter, or with one jitter for all cells, it is another.
-#[test]
-fn jittered_points_have_the_exact_mean_and_variance() {
-    for (i, (r, side)) in [(SHEET, 4), (offset(), 3), (offset(), 1), (offset(), 32)].into_iter().enumerate() {
-        let ([a, b], [c, d], s) = (r.x_range(), r.y_range(), side as f64);
-        let ([w, h], [wc, hc]) = ([b - a, d - c], [(b - a) / s, (d - c) / s]);
-        let x2 = (0.5 * (a + b)).powi(2) + (w * w - wc * wc) / 12.0;
-        let y2 = (0.5 * (c + d)).powi(2) + (h * h - hc * hc) / 12.0;
-        let of_cells = x2 * hc * hc / 12.0 + y2 * wc * wc / 12.0 + wc * wc * hc * hc / 144.0;
-        let variance = r.area().powi(2) * of_cells / (s * s);
-        let mean = Integrand::Product.integral(&r).unwrap();
-        if side == 1 {
-            let independent = Integrand::Product.variance(&r).unwrap();
-            assert_relative_eq!(variance, independent, epsilon = 0.0, max_relative = 1e-14);
-        }
-        let estimator = r.jittered(|x, y| x * y, side).unwrap();
-        assert_mean(&format!("{side}² cells"), &estimator, mean, 50_000, seed(280 + 2 * i as u64));
-        assert_variance(
-            &format!("{side}² cells"),
-            &estimator,
-            mean,
-            variance,
-            50_000,
-            seed(281 + 2 * i as u64),
-        );
-    }
-}
-
-/// The variance of xy over an Owen-scrambled (0, m, 2)-net of n = 2ᵐ points on the unit square about the
-/// origin. With N(j, k) = n max(1, 2^(m−j−k)) ordered pairs of points that share a cell of 2⁻ʲ × 2⁻ᵏ, the
-/// gain of level (j, k) is \[4N(j+1, k+1) − 2N(j+1, k) − 2N(j, k+1) + N(j, k)\]/n = 0 up to j + k = m − 2,
-/// then 2, then 1 (Owen 1997); xy has the variance 4^(−j−k)/256 there, j + k = K comes K + 1 times, and the
-/// sum is this.
-fn net_variance_of_xy(m: u64) -> f64 {
-    (28.0 * m as f64 / 3.0 + 16.0 / 9.0) / 256.0 / 8f64.powi(m as i32)
-}
-
-/// x alone falls into 2ᵐ cells with one uniform point in each: 1/(12n³).
-fn net_variance_of_x(m: u64) -> f64 {
-    1.0 / 12.0 / 8f64.powi(m as i32)
-}
-
-/// xy about (x̄, ȳ) is x̄ȳ + x̄ h V + ȳ w U + w h UV with uncorrelated parts: the exact variance of the Sobol
-/// estimate, by the theory of Owen scrambling. Seen: a mean off by 14/141 = 10 % of σ, which itself is 1e-4
-/// of σ for independent points at n = 4096, and some 20 % of the variance; unscrambled points, one scramble
-/// for both axes, or digits from elsewhere do not pass.
-#[test]
-fn sobol_points_have_the_exact_mean_and_variance() {
-    // one point is the same as independent ones
-    assert_relative_eq!(net_variance_of_xy(0), 1.0 / 144.0, epsilon = 0.0, max_relative = 1e-15);
-    for (i, (r, m)) in
-        [(SHEET, 0), (SHEET, 4), (SHEET, 10), (offset(), 1), (offset(), 7)].into_iter().enumerate()
-    {
-        let ([a, b], [c, d]) = (r.x_range(), r.y_range());
-        let ([w, h], [x, y]) = ([b - a, d - c], [0.5 * (a + b), 0.5 * (c + d)]);
-        let linear = ((x * h).powi(2) + (y * w).powi(2)) * net_variance_of_x(m);
-        let variance = r.area().powi(2) * (linear + (w * h).powi(2) * net_variance_of_xy(m));
-        let mean = Integrand::Product.integral(&r).unwrap();
-        let estimator = r.sobol(|x, y| x * y, 1 << m).unwrap();
-        let what = format!("{} Sobol points", 1 << m);
-        assert_mean(&what, &estimator, mean, 20_000, seed(300 + 2 * i as u64));
-        assert_variance(&what, &estimator, mean, variance, 20_000, seed(301 + 2 * i as u64));
-    }
-}
-
-/// Sums of a function of x and one of y, for which each axis alone decides: with n = 2ᵐ the variance is Σ
-/// over the cells of 1/n² Var, here A² \[Var X² + Var Y²\] in cells of w/n. Seen: 10 % of it, from 2 to 65536
-/// points.
-#[test]
-fn sobol_points_are_exact_on_each_axis() {
-    for (i, (r, m, draws)) in
-        [(SHEET, 1, 40_000), (offset(), 6, 40_000), (offset(), 16, 400)].into_iter().enumerate()
-    {
-        let n = f64::from(1u32 << m);
-        let cells = |[a, b]: [f64; 2]| {
-            let (middle, length) = (0.5 * (a + b), b - a);
-            let cell = length / n;
-            // Var X² = x̄² l²/3 + l⁴/180 in each, Σ x̄² as for jittered cells
-            (middle.powi(2) + (length * length - cell * cell) / 12.0) * cell * cell / 3.0
-                + cell.powi(4) / 180.0
-        };
-        let variance = r.area().powi(2) * (cells(r.x_range()) + cells(r.y_range())) / n;
-        let mean = Integrand::Paraboloid.integral(&r).unwrap();
-        let estimator = r.sobol(|x, y| x * x + y * y, 1 << m).unwrap();
-        assert_mean(&format!("{n} Sobol points"), &estimator, mean, draws, seed(320 + 2 * i as u64));
-        assert_variance(
-            &format!("{n} Sobol points"),
-            &estimator,
-            mean,
-            variance,
-            draws,
-            seed(321 + 2 * i as u64),
-        );
-    }
-}
-
-/// Numbers of points that are no power of two are unbiased as well. Seen: 14/141 = 10 % of a replicate's σ.
-#[test]
-fn any_number_of_sobol_points_is_unbiased() {
-    for n in [3, 100, 1000] {
-        let estimator = offset().sobol(|x, y| Integrand::Gaussian.at(x, y), n).unwrap();
-        assert_mean(&format!("{n} Sobol points"), &estimator, 0.9845040919157972, 20_000, seed(330 + n));
-    }
 }
 
 /// One draw after another: (X₁ − μ)(X₂ − μ) has mean 0 if replicates are independent, else their covariance.
@@ -705,41 +531,6 @@ fn replicates_are_independent_of_each_other() {
     for (i, estimator) in estimators.iter().enumerate() {
         let products = from_fn(|rng| (estimator.draw(rng) - mean) * (estimator.draw(rng) - mean));
         assert_mean("covariance", &products, 0.0, 20_000, seed(340 + i as u64));
-    }
-}
-
-/// How often the 95 % interval of an estimate holds the truth, over 40,000 seeds.
-fn coverage(estimator: &(impl Estimator + ?Sized), truth: f64, draws: u64, first: u64) -> f64 {
-    const SEEDS: u64 = 40_000;
-    let one = run(estimator, draws, first);
-    let [low, high] = one.confidence_interval(0.95).unwrap();
-    // Student's t depends on the draws alone
-    let t = 0.5 * (high - low) / one.std_error().unwrap();
-    let inside = |i| run(estimator, draws, first.wrapping_add(i)).z(truth).unwrap().abs() <= t;
-    (0..SEEDS).filter(|&i| inside(i)).count() as f64 / SEEDS as f64
-}
-
-/// Of every answer with a variance, at 300 draws (200 replicates): a skewed one such as the Gaussian's,
-/// mostly near 0, covers 94.8 % there, and still less with fewer. Over 40,000 seeds the share has the
-/// standard deviation √(0.95 · 0.05/40,000) = 0.0011, so 94 and 96 % are 9 of them away from 95 (7 from
-/// 94.8), and an error bar 5 % too long or too short is seen.
-#[test]
-fn intervals_cover_the_truth_as_often_as_they_say() {
-    let bell = |x: f64, y: f64| Integrand::Gaussian.at(x, y);
-    let truth = Integrand::Gaussian.integral(&SHEET).unwrap();
-    let mut rows: Vec<(&str, Box<dyn Estimator>, f64, u64)> = vec![
-        ("f/p", Box::new(f_over_p(move |&[x, y]: &[f64; 2]| bell(x, y), SHEET)), truth, 300),
-        ("all pairs", Box::new(SHEET.all_pairs(bell, 4).unwrap()), truth, 200),
-        ("jittered", Box::new(SHEET.jittered(bell, 4).unwrap()), truth, 200),
-        ("Sobol", Box::new(SHEET.sobol(bell, 16).unwrap()), truth, 200),
-    ];
-    for f in [Integrand::Paraboloid, Integrand::Disc, Integrand::Gaussian, Integrand::Product] {
-        let estimator = SHEET.independent(move |x, y| f.at(x, y));
-        rows.push((f.formula(), Box::new(estimator), f.integral(&SHEET).unwrap(), 300));
-    }
-    for (i, (what, estimator, truth, draws)) in rows.iter().enumerate() {
-        let share = coverage(estimator, *truth, *draws, seed(1_000_000 * (i as u64 + 1)));
-        assert!((0.94..=0.96).contains(&share), "{what}: {share}");
     }
 }
 
@@ -779,25 +570,25 @@ fn the_error_falls_as_it_should() {
         from_fn(move |rng| (0..n).map(|_| one.draw(rng)).sum::<f64>() / f64::from(n))
     };
     let [by, off] = slope(&independent(16), &independent(1024), 64.0, mean, [20_000, 5000], 350);
-    assert!((by + 0.5).abs() <= Z * off && Z * off < 0.1, "independent: {by} ± {off}");
+    assert!((by + 0.5).abs() <= z() * off && Z * off < 0.1, "independent: {by} ± {off}");
 
     let grid = |side| SHEET.jittered(f, side).unwrap();
     let [by, off] = slope(&grid(8), &grid(64), 64.0, mean, [20_000, 5000], 352);
-    assert!((by + 1.0).abs() <= 0.005 + Z * off && Z * off < 0.1, "jittered: {by} ± {off}");
+    assert!((by + 1.0).abs() <= 0.005 + z() * off && Z * off < 0.1, "jittered: {by} ± {off}");
 
     let set = |points| SHEET.sobol(|x, y| x * y, points).unwrap();
     let expected = 0.5 * (net_variance_of_xy(14) / net_variance_of_xy(8)).ln() / 64f64.ln();
     let [by, off] = slope(&set(256), &set(16384), 64.0, 0.0, [20_000, 2000], 354);
-    assert!((by - expected).abs() <= Z * off && expected < -1.4, "Sobol, xy: {by} ± {off} for {expected}");
+    assert!((by - expected).abs() <= z() * off && expected < -1.4, "Sobol, xy: {by} ± {off} for {expected}");
     let set = |points| SHEET.sobol(f, points).unwrap();
     let [by, off] = slope(&set(256), &set(16384), 64.0, mean, [20_000, 4000], 356);
-    assert!(by + Z * off <= -1.35, "Sobol, Gaussian: {by} ± {off}");
+    assert!(by + z() * off <= -1.35, "Sobol, Gaussian: {by} ± {off}");
 
     let pairs = |n| SHEET.all_pairs(f, n).unwrap();
     let exact = |n| Integrand::Gaussian.all_pairs_variance(&SHEET, n).unwrap();
     let expected = 0.5 * (exact(64) / exact(8)).ln() / 64f64.ln();
     let [by, off] = slope(&pairs(8), &pairs(64), 64.0, mean, [20_000, 5000], 358);
-    assert!((by - expected).abs() <= Z * off && (expected + 0.25).abs() < 0.02, "all pairs: {by} ± {off}");
+    assert!((by - expected).abs() <= z() * off && (expected + 0.25).abs() < 0.02, "all pairs: {by} ± {off}");
 }
 
 // ---- the classic mistakes
@@ -886,7 +677,7 @@ fn classic_mistakes_are_rejected_with_their_ratios() {
         let estimate = run(mistake, 400_000, seed(400 + i as u64));
         let (z, off) = (estimate.z(*truth).unwrap(), estimate.z(ratio * truth).unwrap());
         assert!(z.abs() > Z, "{what} is not seen: {estimate} for {truth}");
-        assert!(off.abs() <= Z, "{what}: {estimate} is not {ratio} times {truth} (z = {off})");
+        assert!(off.abs() <= self::z(), "{what}: {estimate} is not {ratio} times {truth} (z = {off})");
     }
 }
 
@@ -901,11 +692,11 @@ fn the_same_u_for_x_and_y_is_seen_only_where_they_meet() {
         })
     };
     let xy = run(&same(|x, y| x * y), 400_000, seed(440));
-    assert!(xy.z(64.0 / 3.0).unwrap().abs() <= Z && xy.z(0.0).unwrap() > Z, "{xy}");
+    assert!(xy.z(64.0 / 3.0).unwrap().abs() <= z() && xy.z(0.0).unwrap() > Z, "{xy}");
     let one = run(&same(|_, _| 1.0), 1000, seed(441));
     assert_eq!((one.mean(), one.variance()), (16.0, Some(0.0)));
     let sum = run(&same(|x, y| x + y), 400_000, seed(442));
-    assert!(sum.z(0.0).unwrap().abs() <= Z, "{sum}");
+    assert!(sum.z(0.0).unwrap().abs() <= z(), "{sum}");
     assert_variance("x + y, same U", &same(|x, y| x + y), 0.0, 256.0 * 64.0 / 12.0, 400_000, seed(443));
     assert_variance("x + y", &SHEET.independent(|x, y| x + y), 0.0, 256.0 * 32.0 / 12.0, 400_000, seed(444));
 }
@@ -950,44 +741,6 @@ fn dependent_points_taken_as_draws_have_a_wrong_error_bar() {
 
 // ---- cost, bits and bad values
 // ---------------------------------------------------------------------------------
-
-#[test]
-fn costs_are_counted() {
-    let one = |_: f64, _: f64| 1.0;
-    let rows: [(Box<dyn Estimator>, u64, u64); 7] = [
-        (Box::new(SHEET.independent(one)), 1, 2),
-        (Box::new(f_over_p(|_: &[f64; 2]| 1.0, SHEET)), 1, 2),
-        (Box::new(SHEET.all_pairs(one, 32).unwrap()), 1024, 64),
-        (Box::new(SHEET.jittered(one, 32).unwrap()), 1024, 2049),
-        (Box::new(SHEET.jittered(one, 200).unwrap()), 40_000, 80_001),
-        (Box::new(SHEET.sobol(one, 1024).unwrap()), 1024, 2049),
-        (Box::new(SHEET.sobol(one, 3).unwrap()), 3, 7),
-    ];
-    for (estimator, evaluations, random_numbers) in rows {
-        let outcome = Run::new(1).estimate(&estimator, Budget::Draws(21)).unwrap();
-        assert_eq!(
-            (outcome.cost.evaluations, outcome.cost.random_numbers),
-            (21 * evaluations, 21 * random_numbers)
-        );
-        assert_eq!((outcome.estimate.mean(), outcome.estimate.variance()), (16.0, Some(0.0)));
-    }
-}
-
-#[test]
-fn any_number_of_threads_gives_the_same_bits() {
-    let f = |x: f64, y: f64| x * x + y;
-    let estimators: [Box<dyn Estimator>; 4] = [
-        Box::new(offset().independent(f)),
-        Box::new(offset().all_pairs(f, 9).unwrap()),
-        Box::new(offset().jittered(f, 9).unwrap()),
-        Box::new(offset().sobol(f, 100).unwrap()),
-    ];
-    for estimator in &estimators {
-        let with =
-            |threads| Run::new(5).threads(threads).estimate(estimator, Budget::Draws(1001)).unwrap().estimate;
-        assert!([2, 3, 8].map(with).iter().all(|other| *other == with(1)));
-    }
-}
 
 /// What seed 1 draws, bit by bit: a change here changes published numbers and needs a line in the changelog.
 #[test]
@@ -1082,10 +835,6 @@ fn sums_are_exact_at_every_scale() {
 // ---- properties
 // ------------------------------------------------------------------------------------------------
 
-fn any_bits() -> impl Strategy<Value = f64> {
-    any::<u64>().prop_map(f64::from_bits)
-}
-
 /// Numbers of every size, and the ones where things break.
 fn wild() -> impl Strategy<Value = f64> {
     prop_oneof![
@@ -1126,7 +875,7 @@ proptest! {
         let Ok(r) = Rectangle::new(x, y) else { return Ok(()) };
         prop_assert!(r.area().is_normal() && r.area() > 0.0 && (1.0 / r.area()).is_normal());
         let mut rng = Stream::new(n, 0);
-        let points = [r.sample(&mut rng), r.sample(&mut rng), r.sample(&mut Ones), [x[0], y[0]], [x[1],
+        let points = [r.sample(&mut rng), r.sample(&mut rng), r.sample(&mut Stuck(u64::MAX)), [x[0], y[0]], [x[1],
             y[1]]];
         for point in points {
             prop_assert!(x[0] <= point[0] && point[0] <= x[1] && y[0] <= point[1] && point[1] <= y[1]);
@@ -1156,40 +905,19 @@ proptest! {
 /// ∫ₐᵇ g by 20-point Gauss–Legendre in 12 panels, broken at 0.
 fn quadrature([a, b]: [f64; 2], g: impl Fn(f64) -> f64) -> f64 {
     let broken = if a < 0.0 && 0.0 < b { vec![a, 0.0, b] } else { vec![a, b] };
+    static RULE: std::sync::OnceLock<Vec<(f64, f64)>> = std::sync::OnceLock::new();
+    let rule = RULE.get_or_init(|| common::gauss(20));
     let mut sum = 0.0;
     for ends in broken.windows(2) {
         let panel = (ends[1] - ends[0]) / 12.0;
         for i in 0..12 {
             let left = ends[0] + panel * f64::from(i);
-            for (node, weight) in legendre() {
-                sum += weight * 0.5 * panel * g(left + panel * 0.5 * (1.0 + node));
+            for (node, weight) in rule {
+                sum += weight * panel * g(left + panel * node);
             }
         }
     }
     sum
-}
-
-/// Nodes and weights by Newton's method on the Legendre polynomial of degree 20.
-fn legendre() -> &'static [(f64, f64)] {
-    static RULE: std::sync::OnceLock<Vec<(f64, f64)>> = std::sync::OnceLock::new();
-    RULE.get_or_init(|| {
-        (0..20)
-            .map(|i| {
-                let mut x = (PI * (f64::from(i) + 0.75) / 20.5).cos();
-                let mut slope = 0.0;
-                for _ in 0..50 {
-                    let (mut p, mut before) = (x, 1.0);
-                    for k in 2..=20 {
-                        let k = f64::from(k);
-                        (p, before) = (((2.0 * k - 1.0) * x * p - (k - 1.0) * before) / k, p);
-                    }
-                    slope = 20.0 * (x * p - before) / (x * x - 1.0);
-                    x -= p / slope;
-                }
-                (x, 2.0 / ((1.0 - x * x) * slope * slope))
-            })
-            .collect()
-    })
 }
 
 /// ∫∫ g, one quadrature within the other.
@@ -1246,47 +974,5 @@ proptest! {
             let got = got.expect("no sliver");
             prop_assert!((got - flux).abs() <= 1e-11 * flux, "{} for {}", got, flux);
         }
-    }
-}
-
-/// Σ cᵢⱼ xⁱ yʲ up to the third degree each, with its integral.
-#[derive(Debug, Clone, Copy)]
-struct Polynomial([[f64; 4]; 4]);
-
-impl Polynomial {
-    fn at(&self, x: f64, y: f64) -> f64 {
-        self.0.iter().rev().fold(0.0, |sum, row| sum * x + row.iter().rev().fold(0.0, |sum, c| sum * y + c))
-    }
-
-    fn integral(&self, [a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
-        let power = |low: f64, high: f64, i: usize| {
-            let i = i as i32 + 1;
-            (high.powi(i) - low.powi(i)) / f64::from(i)
-        };
-        let terms = |(i, row): (usize, &[f64; 4])| -> f64 {
-            row.iter().enumerate().map(|(j, factor)| factor * power(a, b, i) * power(c, d, j)).sum()
-        };
-        self.0.iter().enumerate().map(terms).sum()
-    }
-}
-
-proptest! {
-    #![proptest_config(config(8))]
-
-    /// All four estimators on random polynomials over random rectangles: 8 × 4 z-tests. Seen: 14 standard
-    /// errors of each.
-    #[test]
-    fn random_polynomials_over_random_rectangles_are_unbiased(
-        x in range(), y in range(),
-        coefficients in prop::array::uniform4(prop::array::uniform4(-1.0..1.0f64)),
-        n in 1u64..20, points in 2u64..200, at in 0u64..1000,
-    ) {
-        let (r, polynomial) = (rectangle(x, y), Polynomial(coefficients));
-        let truth = polynomial.integral(x, y);
-        let f = |x: f64, y: f64| polynomial.at(x, y);
-        assert_mean("independent", &r.independent(f), truth, 200_000, seed(500 + at));
-        assert_mean("all pairs", &r.all_pairs(f, n).unwrap(), truth, 4000, seed(501 + at));
-        assert_mean("jittered", &r.jittered(f, n).unwrap(), truth, 4000, seed(502 + at));
-        assert_mean("Sobol", &r.sobol(f, points).unwrap(), truth, 4000, seed(503 + at));
     }
 }

@@ -65,10 +65,14 @@ fn variances_costs_and_means_are_those_of_the_rivals() {
     let found = compare(&[Rival::new("one", uniform), Rival::new("two", mean_of_two)], 0.5);
     let [one, two] = &found.rivals[..] else { panic!("two rivals") };
     for (rival, variance) in [(one, 1.0 / 12.0), (two, 1.0 / 24.0)] {
-        assert!((rival.variance() - variance).abs() <= 7.0 * rival.variance_error, "{rival:?}");
+        assert!(
+            (rival.variance() - variance).abs() <= common::deviations(7.0) * rival.variance_error,
+            "{rival:?}"
+        );
         assert!(rival.variance_error <= 0.05 * variance, "too few draws to tell: {rival:?}");
         assert!(
-            (rival.estimate.mean() - 0.5).abs() <= 7.0 * (variance / rival.estimate.draws() as f64).sqrt(),
+            (rival.estimate.mean() - 0.5).abs()
+                <= common::deviations(7.0) * (variance / rival.estimate.draws() as f64).sqrt(),
             "{rival:?}"
         );
         let [low, high] = rival.seconds_range;
@@ -346,7 +350,10 @@ fn slopes_are_those_of_a_series() {
     let slope = found.slope(&found.rivals[1]).unwrap();
     let expected = 0.5 * (exact(8.0) / exact(2.0)).ln() / 16f64.ln();
     let [a, b] = [0, 1].map(|index| found.rivals[index].variance_error / found.rivals[index].variance());
-    assert!((slope - expected).abs() <= 7.0 * 0.5 * a.hypot(b) / 16f64.ln(), "{slope}, not {expected}");
+    assert!(
+        (slope - expected).abs() <= common::deviations(7.0) * 0.5 * a.hypot(b) / 16f64.ln(),
+        "{slope}, not {expected}"
+    );
 }
 
 #[test]
@@ -617,7 +624,7 @@ fn the_reference_for_all_bounces_is_right() {
     )
     .unwrap();
     let found = unbiased::estimate(&paths, Budget::Draws(common::draws(200_000)), common::seed(9)).unwrap();
-    let tolerance = 7.0 * found.std_error().unwrap().hypot(error);
+    let tolerance = common::deviations(7.0) * found.std_error().unwrap().hypot(error);
     assert!((found.mean() - light).abs() <= tolerance, "{found} and {light}");
     assert!(error <= 1e-5 * light);
 }

@@ -15,7 +15,7 @@ mod common;
 
 use std::collections::BTreeMap;
 
-use common::Stuck;
+use common::{Stuck, ulps};
 use glam::DVec3;
 use rand::distr::Distribution;
 use unbiased::inversion::Exponential;
@@ -84,11 +84,6 @@ impl Row {
 }
 
 /// How many steps from one `f64` to the next lead from a to b; NaN is far from everything.
-fn ulps(a: f64, b: f64) -> u64 {
-    let rank = |x: f64| if x.is_sign_negative() { -(x.abs().to_bits() as i64) } else { x.to_bits() as i64 };
-    if a.is_nan() || b.is_nan() { u64::MAX } else { rank(a).abs_diff(rank(b)) }
-}
-
 fn ulps_f32(a: f32, b: f32) -> u64 {
     let rank = |x: f32| if x.is_sign_negative() { -(x.abs().to_bits() as i64) } else { x.to_bits() as i64 };
     if a.is_nan() || b.is_nan() { u64::MAX } else { rank(a).abs_diff(rank(b)) }

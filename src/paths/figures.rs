@@ -20,9 +20,9 @@ use crate::stream::Stream;
 ///
 /// ```
 /// use unbiased::paths::room::{BoxRoom, Scene};
-/// use unbiased::figure;
+/// use unbiased::paths::figures;
 ///
-/// let figure = paths::figures::two_bounces_converging(&BoxRoom::new(Scene::default())?, 1)?;
+/// let figure = figures::two_bounces_converging(&BoxRoom::new(Scene::default())?, 1)?;
 /// assert_eq!(figure.name(), "4_3_convergence");
 /// # Ok::<(), unbiased::Error>(())
 /// ```
@@ -98,7 +98,7 @@ fn running_means(estimator: &dyn Estimator, last: u64, seed: u64) -> Vec<[f64; 2
 /// cos θ > 0.8, and a black occluder covers the directions with cos θ < c.
 ///
 /// ```
-/// let figure = unbiased::paths::figures::occluded_fraction(10_000, 1)?;
+/// let figure = unbiased::figures::occluded_fraction(10_000, 1)?;
 /// assert_eq!(figure.title(), "An occluded direction counts: it adds 0 to the sum and 1 to n");
 /// # Ok::<(), unbiased::Error>(())
 /// ```
@@ -158,10 +158,10 @@ fn find_light(room: &BoxRoom) -> Result<FindLight> {
 ///
 /// ```no_run
 /// use unbiased::paths::room::{BoxRoom, Scene};
-/// use unbiased::figure;
+/// use unbiased::paths::figures;
 ///
 /// // takes some seconds
-/// let figure = paths::figures::radiance_by_bounces(&BoxRoom::new(Scene::default())?, 1)?;
+/// let figure = figures::radiance_by_bounces(&BoxRoom::new(Scene::default())?, 1)?;
 /// assert_eq!(figure.title(), "Each bounce adds less");
 /// # Ok::<(), unbiased::Error>(())
 /// ```
@@ -317,10 +317,10 @@ fn reference(paths: &Paths, seed: u64) -> Result<[f64; 2]> {
 ///
 /// ```no_run
 /// use unbiased::paths::room::{BoxRoom, Scene};
-/// use unbiased::figure;
+/// use unbiased::paths::figures;
 ///
 /// // takes some seconds
-/// let figures = paths::figures::path_errors(&BoxRoom::new(Scene::default())?, 1)?;
+/// let figures = figures::path_errors(&BoxRoom::new(Scene::default())?, 1)?;
 /// assert_eq!(figures[0].name(), "4_3_error");
 /// assert_eq!(figures[1].name(), "4_3_error_seconds");
 /// # Ok::<(), unbiased::Error>(())

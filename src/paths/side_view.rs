@@ -40,16 +40,16 @@ const CANDIDATES: usize = 300;
 ///
 /// ```
 /// use unbiased::paths::room::{BoxRoom, Scene};
-/// use unbiased::figure;
+/// use unbiased::paths::figures;
 /// use unbiased::lambertian::hemisphere::Hemisphere;
 /// use unbiased::paths::{Bounces, FindLight, Paths};
 ///
 /// let room = BoxRoom::new(Scene::default())?;
 /// let paths = |k| Paths::new(room, Bounces::Exactly(k), Hemisphere::Cosine, FindLight::BySampling);
-/// let [to_fill_in, solved] = paths::figures::paths_drawn(&paths(2)?, 3, 1)?;
+/// let [to_fill_in, solved] = figures::paths_drawn(&paths(2)?, 3, 1)?;
 /// assert_eq!([to_fill_in.name(), solved.name()], ["4_1_paths_student", "4_1_paths"]);
 /// assert_eq!(solved.title(), "Three sampled paths of two bounces");
-/// assert!(paths::figures::paths_drawn(&paths(5)?, 3, 1).is_err());
+/// assert!(figures::paths_drawn(&paths(5)?, 3, 1).is_err());
 /// # Ok::<(), unbiased::Error>(())
 /// ```
 ///

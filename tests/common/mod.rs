@@ -1,6 +1,12 @@
-//! What all tests share: seeds, proptest's settings, a furnace and a generator that is stuck.
-#![allow(dead_code)] // each test takes what it needs
+//! What tests share: seeds, proptest's settings, numbers of every kind, comparisons that say what they give in
+//! false alarms, quadrature, a furnace and a generator that is stuck.
+#![allow(dead_code, unused_imports)] // each test takes what it needs
 
+mod alarms;
+
+pub use alarms::{BUDGETS, alarm, deviations};
+use proptest::prelude::*;
+use std::f64::consts::PI;
 use unbiased::lambertian::hemisphere::{Direction, Hemisphere};
 
 /// Fixed by default; `UNBIASED_SEED=n` gives the whole suite fresh ones.
@@ -28,6 +34,116 @@ pub fn config(cases: u32) -> proptest::test_runner::Config {
         failure_persistence: None,
         ..Default::default()
     }
+}
+
+/// 1 − 2⁻⁵³, the largest number below 1.
+pub const NEARLY_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
+
+/// Any bits.
+pub fn any_bits() -> impl Strategy<Value = f64> {
+    any::<u64>().prop_map(f64::from_bits)
+}
+
+/// Any bits in [0, 1]: all sizes alike, anywhere, near 1, near ½, and the ends.
+pub fn probability() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        (0..=1f64.to_bits()).prop_map(f64::from_bits),
+        0.0..=1.0f64,
+        (0.0..54.0f64).prop_map(|power| 1.0 - 2f64.powf(-power)),
+        (1.0..54.0f64, any::<bool>()).prop_map(|(power, up)| {
+            let off = 2f64.powf(-power);
+            if up { 0.5 + off } else { 0.5 - off }
+        }),
+        proptest::sample::select(vec![0.0, f64::from_bits(1), 0.5, NEARLY_ONE, 1.0]),
+    ]
+}
+
+/// How many `f64` lie between.
+pub fn ulps(a: f64, b: f64) -> u64 {
+    let rank = |x: f64| if x.is_sign_negative() { -(x.abs().to_bits() as i64) } else { x.to_bits() as i64 };
+    if a.is_nan() || b.is_nan() { u64::MAX } else { rank(a).abs_diff(rank(b)) }
+}
+
+/// How far from 1 the length of a direction is, in ulp of 1.
+pub fn ulps_off_unit(direction: &Direction) -> f64 {
+    // |v|² − 1 = Σ (x² − share) with each square and its rounding
+    let mut terms = vec![-1.0];
+    for x in direction.vector().to_array() {
+        terms.extend([x * x, x.mul_add(x, -(x * x))]);
+    }
+    terms.sort_by(|a: &f64, b: &f64| b.abs().total_cmp(&a.abs()));
+    0.5 * terms.iter().sum::<f64>().abs() / f64::EPSILON
+}
+
+/// sup |Fₙ − F| of the sample, and how far it may be from 0: with probability 1 − 1e-12, √(ln(2e12)/2n) at
+/// most, whatever n (Dvoretzky, Kiefer & Wolfowitz; Massart 1990).
+pub fn dkw(mut sample: Vec<f64>, cdf: impl Fn(f64) -> f64) -> (f64, f64) {
+    alarm(1e-12);
+    sample.sort_by(f64::total_cmp);
+    let n = sample.len() as f64;
+    let off = sample.iter().enumerate().fold(0.0, |off: f64, (i, &x)| {
+        let (f, below, above) = (cdf(x), i as f64 / n, (i + 1) as f64 / n);
+        // a NaN anywhere stays NaN, which no bound lets pass
+        let here = (f - below).abs().max((above - f).abs());
+        if here <= off { off } else { here }
+    });
+    (off, ((2.0f64 / 1e-12).ln() / (2.0 * n)).sqrt())
+}
+
+/// Nodes and weights of Gauss and Legendre on [0, 1], by Newton's iteration.
+pub fn gauss(n: usize) -> Vec<(f64, f64)> {
+    let node = |i: usize| {
+        let mut x = ((i as f64 + 0.75) / (n as f64 + 0.5) * PI).cos();
+        let mut slope = 0.0;
+        for _ in 0..100 {
+            let (mut p, mut before) = (x, 1.0);
+            for k in 2..=n {
+                let k = k as f64;
+                (p, before) = (((2.0 * k - 1.0) * x * p - (k - 1.0) * before) / k, p);
+            }
+            slope = n as f64 * (x * p - before) / (x * x - 1.0);
+            x -= p / slope;
+            if (p / slope).abs() < 1e-16 {
+                break;
+            }
+        }
+        (0.5 * (x + 1.0), 1.0 / ((1.0 - x * x) * slope * slope))
+    };
+    (0..n).map(node).collect()
+}
+
+/// Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, B-3: an element under the corner of
+/// a parallel rectangle a × b at the distance c; odd in a and b.
+pub fn howell_parallel(a: f64, b: f64, c: f64) -> f64 {
+    let (x, y) = (a / c, b / c);
+    let (sx, sy) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
+    (x / sx * (y / sx).atan() + y / sy * (x / sy).atan()) / (2.0 * PI)
+}
+
+/// B-4: an element on a plane at right angles to the rectangle's, which starts above the element: a away from
+/// the element's plane, b along it, c high; odd in b.
+pub fn howell_perpendicular(a: f64, b: f64, c: f64) -> f64 {
+    let s = a.hypot(c);
+    ((b / c).atan() - c / s * (b / s).atan()) / (2.0 * PI)
+}
+
+/// The variance of xy over an Owen-scrambled (0, m, 2)-net of n = 2ᵐ points on the unit square about the
+/// origin. With N(j, k) = n max(1, 2^(m−j−k)) ordered pairs of points that share a cell of 2⁻ʲ × 2⁻ᵏ, the
+/// gain of level (j, k) is \[4N(j+1, k+1) − 2N(j+1, k) − 2N(j, k+1) + N(j, k)\]/n = 0 up to j + k = m − 2,
+/// then 2, then 1 (Owen 1997); xy has the variance 4^(−j−k)/256 there, j + k = K comes K + 1 times, and the
+/// sum is this.
+pub fn net_variance_of_xy(m: u32) -> f64 {
+    (28.0 * f64::from(m) / 3.0 + 16.0 / 9.0) / 256.0 / 8f64.powi(m as i32)
+}
+
+/// Asserts that so large a share of n runs may be one whose probability lies in `range`: by Chernoff's bound
+/// a right one is beyond with less than α.
+pub fn is_share(what: &str, share: f64, n: u64, [low, high]: [f64; 2], alpha: f64) {
+    alarm(alpha);
+    let p = share.clamp(low, high);
+    let term = |x: f64, y: f64| if x > 0.0 { x * (x / y).ln() } else { 0.0 };
+    let entropy = term(share, p) + term(1.0 - share, 1.0 - p);
+    assert!(n as f64 * entropy <= (2.0 / alpha).ln(), "{what}: {share} of {n} runs");
 }
 
 /// A room without a light in which every face emits 1 and reflects so much.

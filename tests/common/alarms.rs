@@ -1,0 +1,39 @@
+//! False alarms: the random tests say what each comparison may give, and their sum is held as they run.
+
+use std::sync::{Mutex, PoisonError};
+
+/// Test files with the probability that, for fresh seeds, any of their comparisons fails though nothing is
+/// wrong. All others are arithmetic, or run with fixed seeds.
+pub const BUDGETS: [(&str, f64); 13] = [
+    ("estimators", 1e-10),
+    ("inversion", 5e-11),
+    ("rectangle", 2e-10),
+    ("hemisphere", 2e-11),
+    ("lambertian", 2e-11),
+    ("roulette", 1e-10),
+    ("box_room", 3e-15),
+    ("paths", 5.2e-13),
+    ("placement", 1e-13),
+    ("estimate", 5e-12),
+    ("run", 3e-10),
+    ("trade", 2e-11),
+    // at their own α, which their programs state
+    ("check and gallery", 9e-11),
+];
+
+static SPENT: Mutex<f64> = Mutex::new(0.0);
+
+/// Spends what a comparison gives in false alarms: the file's budget holds all of them.
+pub fn alarm(p: f64) {
+    let file = module_path!().split("::").next().unwrap();
+    let budget = BUDGETS.iter().find(|(name, _)| *name == file).map_or(0.0, |(_, budget)| *budget);
+    let mut spent = SPENT.lock().unwrap_or_else(PoisonError::into_inner);
+    *spent += p;
+    assert!(*spent <= budget, "{file} has spent {:e} of its {budget:e} of false alarms", *spent);
+}
+
+/// z std errors for a comparison to be held to, of a mean that is near normal: spends what they give.
+pub fn deviations(z: f64) -> f64 {
+    alarm(statrs::function::erf::erfc(z / std::f64::consts::SQRT_2));
+    z
+}
