@@ -43,8 +43,8 @@ pub fn answer(options: &Options) -> Result<Appendix> {
         example: "extremes",
         title: "Where the obvious code breaks",
         text: "Each formula is right on paper and fails in floating point somewhere: a difference of nearly \
-               equal numbers keeps none of their digits, a square overflows, a sum loses small terms. \
-               An error is counted in ulps, units of the last place of the truth, which was computed with \
+               equal numbers keeps none of their digits, a square overflows, a sum loses small terms. An \
+               error is counted in ulps, units of the last place of the truth, which was computed with \
                another program."
             .into(),
         tables: vec![Table::new(

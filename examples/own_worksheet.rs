@@ -38,14 +38,13 @@ const LENGTH: Parameter = Parameter {
 static NEEDLE: Question = Question {
     id: "B.1",
     title: "Buffon's needle",
-    statement: "A needle «l» times as long as the distance of the lines on a floor is thrown. With \
-                which probability does it cross a line?",
+    statement: "A needle «l» times as long as the distance of the lines on a floor is thrown. With which \
+                probability does it cross a line?",
     hint: "Where does its middle lie between two lines, and at which angle? Integrate over both.",
     formula: "P = 2l/π = «2l/π»",
     latex: &[r"P = \frac{2}{\pi}\int_0^{\pi/2} l \cos\varphi\,d\varphi = \frac{2l}{\pi} \approx «2l/π»"],
     answer: "The middle is uniform between two lines, the angle φ uniform. At φ the needle reaches l cos φ \
-             across the lines, and crosses one \
-             with that probability.",
+             across the lines, and crosses one with that probability.",
     numbers: &[Number {
         part: "",
         symbol: "P",
@@ -104,14 +103,13 @@ static DISC: Question = Question {
     id: "B.2",
     title: "A disc light above",
     statement: "A round light of radiance 1 hangs above a table. From the point under its centre its rim is \
-                seen at «α» degrees to the \
-                vertical. What is the irradiance E there?",
+                seen at «α» degrees to the vertical. What is the irradiance E there?",
     hint: "Which part of the sky is lit, and how does cos θ weigh it?",
     formula: "E = π sin² α = «π s»",
     latex: &[r"E = \int_0^{2\pi}\!\!\int_0^{\alpha} \cos\theta \sin\theta\,d\theta\,d\varphi
           = \pi \sin^2\alpha \approx «π s»"],
-    answer: "The light fills the cone θ < α. Cosine directions hit it with probability sin² α, and each \
-             hit contributes π.",
+    answer: "The light fills the cone θ < α. Cosine directions hit it with probability sin² α, and each hit \
+             contributes π.",
     numbers: &[Number {
         part: "",
         symbol: "E",

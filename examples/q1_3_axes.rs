@@ -17,8 +17,8 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
         if sample <= x { 1.0 } else { 0.0 }
     });
     sheet.row("what the axes stand for").note(
-        "The x-axis holds the values that can be sampled, here all x ≥ 0; \
-         the height of the curve at x is the share of samples at most x.",
+        "The x-axis holds the values that can be sampled, here all x ≥ 0; the height of the curve at x is \
+         the share of samples at most x.",
     );
     sheet.row("share of samples at most x").parameter("x", x).truth(exponential.cdf(x)).estimate(&share)?;
     Ok(())

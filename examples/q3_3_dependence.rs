@@ -13,8 +13,8 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
     let (albedo, radiance) = (sheet.number("albedo"), sheet.number("radiance"));
     let cubes = [Lambertian::new(albedo)?, Lambertian::new(0.5 * albedo)?];
     sheet.row("dependence on ω_o").note(
-        "The estimator draws directions ω_i of incoming light and does not use ω_o: \
-         the result is the same for every viewing direction.",
+        "The estimator draws directions ω_i of incoming light and does not use ω_o: the result is the same \
+         for every viewing direction.",
     );
     for cube in cubes {
         sheet

@@ -27,8 +27,8 @@ pub fn answer(sheet: &Sheet) -> Result<()> {
 }
 
 const INFINITE: &str = "It is infinite since p_rr ≤ ρ². At ρ = 0.8, v = 0.5 and p_rr = 1/5, the 95 % \
-                        intervals of a thousand \
-                        paths cover the truth less than half of the time, and most estimates are too dark.";
+                        intervals of a thousand paths cover the truth less than half of the time, and most \
+                        estimates are too dark.";
 
 #[allow(dead_code)] // the worksheet takes this file in as a module
 fn main() -> std::process::ExitCode {

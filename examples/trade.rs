@@ -355,7 +355,8 @@ fn points_table(points: &[Compared]) -> Table {
     Table::new(
         "2.1: how the points are placed: slopes of the error in n (−½ for independent points), and seconds \
          to 0.1 %, at least those of one draw, which is a whole replicate. The most efficient way, or any \
-         not told apart from it, need not be the fastest to 0.1 %: a replicate may already be more accurate",
+         not told apart from it, need not be the fastest to 0.1 %: a replicate may already be more \
+         accurate",
         [
             "integrand",
             "slope, jittered",

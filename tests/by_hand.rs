@@ -351,8 +351,8 @@ fn what_is_no_answer_is_an_error() {
         (
             "1.3",
             "1",
-            "question 1.3 has no number to judge; these have: 1.1, 1.2, 2.1, 3.1, 3.2, 3.4, 3.5, \
-             5.1(i), 5.1(ii), 5.1(iii), 5.2",
+            "question 1.3 has no number to judge; these have: 1.1, 1.2, 2.1, 3.1, 3.2, 3.4, 3.5, 5.1(i), \
+             5.1(ii), 5.1(iii), 5.2",
         ),
     ] {
         assert_eq!(judge_answer(name, text).unwrap_err().to_string(), sentence);

@@ -347,8 +347,7 @@ fn a_class_is_judged_in_one_command() {
         &folder,
         "answers.csv",
         "\u{feff}student,question,answer,variant\nAna,1.2,1.386,\nBo,1.2,0.602,\n\"Cy, \
-         Jr\",1.2,.602,\nAna,3.2,0.5,albedo=0.5\nBo,3.2,7,\n\
-         Ana,5.1(iii),5,\nBo,5.1(iii),four,\nAna,2.1,1,\n",
+         Jr\",1.2,.602,\nAna,3.2,0.5,albedo=0.5\nBo,3.2,7,\nAna,5.1(iii),5,\nBo,5.1(iii),four,\nAna,2.1,1,\n",
     );
     let draws = folder.join("draws");
     std::fs::create_dir_all(&draws).unwrap();

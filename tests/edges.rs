@@ -427,7 +427,8 @@ proptest! {
         paths.fill(&mut rng, &mut draws);
         let drawn: Vec<f64> = (0..4).map(|_| paths.draw(&mut rng)).collect();
         prop_assert!(draws.iter().chain(&drawn).all(|draw| *draw >= 0.0 && draw.is_finite()), "{draws:?} \
-            {drawn:?} of {paths:?}");
+            {drawn:?} of \
+            {paths:?}");
         match paths.in_f32() {
             Ok(single) => {
                 let mut in_f32 = [f64::NAN; 40];

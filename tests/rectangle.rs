@@ -1,8 +1,8 @@
 //! Section 2: is every estimator over a rectangle unbiased, with the variance it should have, and are the
 //! mistakes seen?
 //!
-//! A z-test at 7 standard errors is wrong with probability 2.6e-12, a DKW band with 1e-12. What a test can see is
-//! said beside it. Means, variances, costs and coverage are those of tests/estimators.rs.
+//! A z-test at 7 standard errors is wrong with probability 2.6e-12, a DKW band with 1e-12. What a test can
+//! see is said beside it. Means, variances, costs and coverage are those of tests/estimators.rs.
 
 mod common;
 
@@ -875,7 +875,8 @@ proptest! {
         let Ok(r) = Rectangle::new(x, y) else { return Ok(()) };
         prop_assert!(r.area().is_normal() && r.area() > 0.0 && (1.0 / r.area()).is_normal());
         let mut rng = Stream::new(n, 0);
-        let points = [r.sample(&mut rng), r.sample(&mut rng), r.sample(&mut Stuck(u64::MAX)), [x[0], y[0]], [x[1],
+        let points = [r.sample(&mut rng), r.sample(&mut rng), r.sample(&mut Stuck(u64::MAX)), [x[0], y[0]],
+            [x[1],
             y[1]]];
         for point in points {
             prop_assert!(x[0] <= point[0] && point[0] <= x[1] && y[0] <= point[1] && point[1] <= y[1]);
@@ -950,8 +951,7 @@ proptest! {
             let variance = r.area() * double([x, y], |x, y| (f.at(x, y) - mean).powi(2));
             let scale = r.area() * double([x, y], |x, y| f.at(x, y).powi(2));
             if let Some(got) = f.variance(&r) {
-                prop_assert!((got - variance).abs() <= 1e-11 * variance + 1e-26 * scale, "{}: {} for \
-                    {}", f, got, variance);
+                prop_assert!((got - variance).abs() <= 1e-11 * variance + 1e-26 * scale, "{}: {} for {}", f, got, variance);
             } else {
                 prop_assert!(f == Integrand::Gaussian && variance < scale / 500.0);
             }
@@ -960,8 +960,7 @@ proptest! {
             if let Some(got) = f.all_pairs_variance(&r, n) {
                 let n = n as f64;
                 let truth = (variance + (n - 1.0) * (along_x + along_y)) / (n * n);
-                prop_assert!((got - truth).abs() <= 1e-11 * truth + 1e-26 * scale, "{}: {} for \
-                    {}", f, got, truth);
+                prop_assert!((got - truth).abs() <= 1e-11 * truth + 1e-26 * scale, "{}: {} for {}", f, got, truth);
             }
         }
         // div(r/|r|) = 1/|r| in the plane: ∫∫ 1/r is the flux of the unit vector through the four sides

@@ -391,8 +391,7 @@ impl fmt::Display for Report {
                 write!(
                     f,
                     "biased: {estimate} after {draws} draws, {ratio:.3} ± {error:.3} times the truth \
-                     {truth}; \
-                     a right estimator would be called biased with probability {:.0e} at most",
+                     {truth}; a right estimator would be called biased with probability {:.0e} at most",
                     self.alpha
                 )
             }

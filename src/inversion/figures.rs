@@ -59,10 +59,8 @@ pub fn exponential(exponential: &Exponential, u: f64, edition: Edition) -> Resul
             format!("Inverting F at u = {given} gives x {} (λ = {lambda})", equals(x, 4)),
             format!(
                 "Three panels for λ = {lambda}: F(x) against x, F⁻¹(u) against u, p(x) against x. Arrows \
-                 lead from \
-                 u = {given} across to the curve of F and down to x {}, and up to the curve of F⁻¹ and \
-                 across; p \
-                 is marked there.{}",
+                 lead from u = {given} across to the curve of F and down to x {}, and up to the curve of F⁻¹ \
+                 and across; p is marked there.{}",
                 equals(x, 4),
                 if x > end { " That x lies beyond the axes." } else { "" }
             ),
@@ -253,12 +251,9 @@ pub fn empirical_cdf(exponential: &Exponential, draws: usize, seed: u64) -> Resu
     Plot::of("1_1_empirical_cdf", 66.0, vec![carried, panel])
         .titled(title, format!(
             "Two panels against x, λ = {lambda}. Left: ten evenly spaced U are carried across to the curve \
-             of F and down \
-             to their samples, which lie closest where F is steepest, near 0. Right: the share of {draws} \
-             samples at most x, \
-             as steps, with a band of ±{} that holds the whole of F with 95 % confidence; F(x) = 1 − e^(−λx) \
-             runs \
-             inside the band (seed {seed}).",
+             of F and down to their samples, which lie closest where F is steepest, near 0. Right: the share \
+             of {draws} samples at most x, as steps, with a band of ±{} that holds the whole of F with 95 % \
+             confidence; F(x) = 1 − e^(−λx) runs inside the band (seed {seed}).",
             typeset(reach, 2)
         ))
         .draw()
@@ -303,8 +298,8 @@ pub fn tails(exponential: &Exponential, draws: usize, seed: u64) -> Result<Figur
     Plot::of("1_1_tails", 62.0, vec![panel])
         .titled("The tail of inversion ends where the grid of uniform numbers ends", format!(
             "P(X > x) against λx on a logarithmic scale: the straight line e^(−λx), {draws} f64 samples on \
-             it (seed {seed}), and the last \
-             samples possible: λx = 16.636 with f32 uniform numbers, 36.737 with f64."
+             it (seed {seed}), and the last samples possible: λx = 16.636 with f32 uniform numbers, 36.737 \
+             with f64."
         ))
         .draw()
 }

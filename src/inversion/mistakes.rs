@@ -105,9 +105,8 @@ const ABOUT: About = About {
     id: "samples",
     name: "exponential samples",
     questions: &[("1.1", 0), ("1.2", 0)],
-    draw: "A draw is a function of one sample X of the exponential distribution with this rate λ:\n\
-           x: X itself; cdf: F(X) = 1 − e^(−λX), or 0 where X < 0; capped: X, but at least 0 and at most \
-           2/λ.",
+    draw: "A draw is a function of one sample X of the exponential distribution with this rate λ:\nx: X \
+           itself; cdf: F(X) = 1 − e^(−λX), or 0 where X < 0; capped: X, but at least 0 and at most 2/λ.",
 };
 
 /// A wrong sample: a function of the rate and one uniform number.

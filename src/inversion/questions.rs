@@ -36,9 +36,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
         id: "1.1",
         title: "Sampling the exponential distribution",
         statement: "U is uniform on [0, 1). Which function of U is a sample of the exponential distribution \
-                    with rate λ, whose density is \
-                    p(x) = λ e^(−λx) for x ≥ 0? And how is any other one-dimensional distribution sampled, \
-                    given its cdf F?",
+                    with rate λ, whose density is p(x) = λ e^(−λx) for x ≥ 0? And how is any other \
+                    one-dimensional distribution sampled, given its cdf F?",
         hint: "Integrate the density to get F(x), set F(x) equal to u, and solve for x. What happens at u = \
                1?",
         formula: "x = F⁻¹(u) = −ln(1 − u)/λ;  E[X] = 1/λ, Var X = 1/λ²",
@@ -48,11 +47,9 @@ pub(crate) const QUESTIONS: &[Question] = &[
             r"F^-(u) = \inf\{x : F(x) \ge u\}",
         ],
         answer: "Set F(x) = u and solve for x. A uniform number lands between F(x) and F(x + dx) with \
-                 probability p(x) dx, which is what \
-                 sampling p means. Where F has no inverse in closed form, or has jumps and flats, F⁻(u) = \
-                 inf{x : F(x) ≥ u} \
-                 takes its place and is found by bisection. Whether λ divides or multiplies \
-                 shows only where λ is not 1.",
+                 probability p(x) dx, which is what sampling p means. Where F has no inverse in closed form, \
+                 or has jumps and flats, F⁻(u) = inf{x : F(x) ≥ u} takes its place and is found by \
+                 bisection. Whether λ divides or multiplies shows only where λ is not 1.",
         numbers: &[Number {
             part: "",
             symbol: "x(0.75)",
@@ -75,8 +72,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
         wrong: &[],
         on_the_original: Some(
             "The original takes U from [0, 1], where U = 1 would give an infinite sample: U lies in [0, 1). \
-             It also writes F⁻¹(x); the \
-             argument of an inverse cdf is a probability, u.",
+             It also writes F⁻¹(x); the argument of an inverse cdf is a probability, u.",
         ),
         example: "q1_1_exponential",
         module: "inversion",
@@ -95,8 +91,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
             r"p(x) = \lambda e^{-\lambda x} = \lambda (1 - u) = «λ(1 − u)»",
         ],
         answer: "Start at «u» on the vertical axis of the CDF, go across to the curve and down to x. The \
-                 same point lies on the inverse \
-                 CDF, above u = «u».",
+                 same point lies on the inverse CDF, above u = «u».",
         numbers: &[Number {
             part: "",
             symbol: "x",

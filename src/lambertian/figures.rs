@@ -40,9 +40,9 @@ pub fn integrand() -> Result<Figure> {
     Plot::of("3_2_integrand", 62.0, vec![panel])
         .titled(
             "cos θ sin θ has area ½; with a factor forgotten the area is 1",
-            "Three curves over θ from 0 to π/2: cos θ sin θ, filled, with area ½; cos θ, which is \
-                      left when sin θ of the solid \
-                      angle is forgotten, and sin θ, which is left when cos θ is, each with area 1.",
+            "Three curves over θ from 0 to π/2: cos θ sin θ, filled, with area ½; cos θ, which is left when \
+             sin θ of the solid angle is forgotten, and sin θ, which is left when cos θ is, each with area \
+             1.",
         )
         .draw()
 }
@@ -86,12 +86,10 @@ pub fn directions(hemisphere: Hemisphere, count: usize, seed: u64) -> Result<Fig
     Plot::of(name, 62.2, vec![top, side])
         .titled(format!("{count} {word} directions, from above and from the side"), format!(
             "{count} points on the unit hemisphere drawn with {rule} and φ = 2πV (seed {seed}), seen from \
-             above, inside the circle of the horizon, \
-             and from the side, above the surface. {}",
+             above, inside the circle of the horizon, and from the side, above the surface. {}",
             match hemisphere {
                 Uniform =>
-                    "From the side they fill all heights alike; from above they crowd towards the \
-                            rim.",
+                    "From the side they fill all heights alike; from above they crowd towards the rim.",
                 Cosine => "From above they fill the disc evenly; few are near the horizon.",
             }
         ))
@@ -171,10 +169,10 @@ pub fn variance_against_exponent(draws: u64, seed: u64) -> Result<Figure> {
             "Cosine-weighted directions win for a > −½, uniform ones below",
             format!(
                 "Left: f/p against θ under a uniform light; 2 cos θ for uniform directions, 1 everywhere for \
-             cosine-weighted ones, whose p is proportional to f. Right: variance of one draw against the \
-             exponent a of the light cos^a θ. Uniform: 0 at a = −1, 1/3 at a = 0. Cosine: infinite as a → \
-             −1, 0 at a = 0. Both are 2/9 at \
-             a = −½. Points: variances of {draws} draws, seed {seed}."
+                 cosine-weighted ones, whose p is proportional to f. Right: variance of one draw against the \
+                 exponent a of the light cos^a θ. Uniform: 0 at a = −1, 1/3 at a = 0. Cosine: infinite as a \
+                 → −1, 0 at a = 0. Both are 2/9 at a = −½. Points: variances of {draws} draws, seed \
+                 {seed}."
             ),
         )
         .draw()
@@ -218,8 +216,8 @@ pub fn variance_against_ring(draws: u64, seed: u64) -> Result<Figure> {
     Plot::of("3_6_ring", 66.0, vec![panel])
         .titled("Light from near the horizon: cosine-weighted directions lose for ε < ¾", format!(
             "The ratio of cosine's variance to the uniform one against the width ε of the ring of light cos \
-             θ < ε, falling from 8.03 at ε = 0.1 to 1 at \
-             ε = ¾ and below. Points: variances of {draws} draws, seed {seed}."
+             θ < ε, falling from 8.03 at ε = 0.1 to 1 at ε = ¾ and below. Points: variances of {draws} \
+             draws, seed {seed}."
         ))
         .draw()
 }
@@ -295,16 +293,13 @@ pub fn betting(seed: u64) -> Result<Figure> {
     Plot::of("check_wealth", 76.0, vec![against, certificate])
         .titled(format!(
             "Betting against a mean: the classic mistake is refuted after {classic_draws} draws, a bias of 1 \
-             % after {off_draws}, and the right \
-             estimator certified within 0.5 % after {right_draws}"
+             % after {off_draws}, and the right estimator certified within 0.5 % after {right_draws}"
         ), format!(
             "Two panels, wealth against draws, both logarithmic, seed {seed}. Left, bets against the mean \
-             2/3: those on uniform directions \
-             with the cosine weight reach 10¹² after {classic_draws} draws, those on an estimator 1 % too \
-             large after {off_draws}, those on \
-             a right one never. Right, for the right estimator: bets against means 0.5 % less and 0.5 % more \
-             both pass \
-             10⁶ by {right_draws} draws."
+             2/3: those on uniform directions with the cosine weight reach 10¹² after {classic_draws} draws, \
+             those on an estimator 1 % too large after {off_draws}, those on a right one never. Right, for \
+             the right estimator: bets against means 0.5 % less and 0.5 % more both pass 10⁶ by \
+             {right_draws} draws."
         ))
         .draw()
 }

@@ -132,10 +132,9 @@ const ABOUT: About = About {
     name: "reflected light",
     questions: &[("3.2", 1), ("3.4", 0), ("3.5", 0)],
     draw: "A draw is one of an estimate of the radiance L_r that a diffuse surface of this albedo reflects \
-           under\n\
-           the light L_i(ω), ω = (x, y, z) a unit vector and z = cos θ the height above the surface:\n\
-           one: 1; cos: z; cos2: z²; half: 2 where y ≥ 0, else 0; lobe: 4 where y ≥ 0 and z² > 1/2, else 0;\n\
-           grazing: 16 where z < 1/4, else 0. All are 0 where z < 0.",
+           under\nthe light L_i(ω), ω = (x, y, z) a unit vector and z = cos θ the height above the \
+           surface:\none: 1; cos: z; cos2: z²; half: 2 where y ≥ 0, else 0; lobe: 4 where y ≥ 0 and z² > \
+           1/2, else 0;\ngrazing: 16 where z < 1/4, else 0. All are 0 where z < 0.",
 };
 
 type Text = &'static str;

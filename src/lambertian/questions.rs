@@ -48,9 +48,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
         id: "3.1",
         title: "What the cube emits",
         statement: "A wooden cube scatters light diffusely: its BRDF is f_r = ρ/π. Outgoing radiance is \
-                    emitted plus reflected radiance, \
-                    L_o = L_e + L_r with L_r = ∫ f_r L_i cos θ dω over the hemisphere. What is the cube's \
-                    emitted radiance L_e?",
+                    emitted plus reflected radiance, L_o = L_e + L_r with L_r = ∫ f_r L_i cos θ dω over the \
+                    hemisphere. What is the cube's emitted radiance L_e?",
         hint: "Does wood emit light?",
         formula: "L_e = 0",
         latex: &[
@@ -85,15 +84,15 @@ pub(crate) const QUESTIONS: &[Question] = &[
         id: "3.2",
         title: "Under a uniform sky",
         statement: "The incoming radiance L_i is the same from every direction of the hemisphere above p, on \
-                    the cube's top face. What is the reflected \
-                    radiance L_r? (Write dω in terms of θ and φ.)",
+                    the cube's top face. What is the reflected radiance L_r? (Write dω in terms of θ and \
+                    φ.)",
         hint: "dω = sin θ dθ dφ. Substitute u = sin θ.",
         formula: "L_r = ρ L_i = «ρ L_i»",
         latex: &[r"L_r = \frac{\rho}{\pi} L_i \int_0^{2\pi}\!\! d\varphi \int_0^{\pi/2} \cos\theta
               \sin\theta\, d\theta = \frac{\rho}{\pi} L_i \cdot 2\pi \cdot \frac12 = \rho L_i = «ρ L_i»"],
         answer: "A solid angle is dω = sin θ dθ dφ, so the integrand is cos θ sin θ, whose integral over θ \
-                 is ½. The π of the BRDF is there to cancel the π \
-                 that is left: a white surface (ρ = 1) under a uniform sky is as bright as the sky.",
+                 is ½. The π of the BRDF is there to cancel the π that is left: a white surface (ρ = 1) \
+                 under a uniform sky is as bright as the sky.",
         numbers: &[Number {
             part: "",
             symbol: "L_r",
@@ -162,9 +161,9 @@ pub(crate) const QUESTIONS: &[Question] = &[
     Question {
         id: "3.4",
         title: "Directions in proportion to the BRDF",
-        statement: "The incoming radiance is no longer uniform. To estimate L_r, n directions are drawn \
-                    over the hemisphere from a density p(ω) proportional to the BRDF. Write down the Monte \
-                    Carlo estimator.",
+        statement: "The incoming radiance is no longer uniform. To estimate L_r, n directions are drawn over \
+                    the hemisphere from a density p(ω) proportional to the BRDF. Write down the Monte Carlo \
+                    estimator.",
         hint: "A density in proportion to a constant is a constant, and it integrates to 1 over the \
                hemisphere's 2π steradians.",
         formula: "L̂_r = 1/n Σ (ρ/π) L_i cos θ / (1/2π) = 2ρ/n Σ L_i(ω_j) cos θ_j",
@@ -173,8 +172,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
               = \frac{2\rho}{n}\sum_{j=1}^n L_i(\omega_j)\cos\theta_j"],
         answer: "The BRDF ρ/π is constant, so a density proportional to it is constant too, and integrates \
                  to 1 over the hemisphere's 2π steradians: p = 1/(2π). Each draw is the integrand over the \
-                 density. The incoming radiance here is L cos^a θ with a = «a», for which L_r is 2ρL/(a + \
-                 2) = «2ρ L/(a + 2)».",
+                 density. The incoming radiance here is L cos^a θ with a = «a», for which L_r is 2ρL/(a + 2) \
+                 = «2ρ L/(a + 2)».",
         numbers: &[Number {
             part: "",
             symbol: "c",

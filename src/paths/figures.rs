@@ -74,8 +74,8 @@ pub fn two_bounces_converging(room: &BoxRoom, seed: u64) -> Result<Figure> {
         .titled("Three estimators of the light after two bounces, and the value they converge to", format!(
             "Running means against the number of paths n from 10 to {LAST}, logarithmic (seed {seed}). With \
              the exact Lₒ(pⱼ) and cosine directions the mean settles first; with the light sampled at pⱼ and \
-             uniform directions, in its \
-             95 % band, next; where the light is found by chance most paths find nothing, and the mean jumps."
+             uniform directions, in its 95 % band, next; where the light is found by chance most paths find \
+             nothing, and the mean jumps."
         ))
         .draw()
 }
@@ -98,7 +98,7 @@ fn running_means(estimator: &dyn Estimator, last: u64, seed: u64) -> Vec<[f64; 2
 /// cos θ > 0.8, and a black occluder covers the directions with cos θ < c.
 ///
 /// ```
-/// let figure = unbiased::figures::occluded_fraction(10_000, 1)?;
+/// let figure = unbiased::paths::figures::occluded_fraction(10_000, 1)?;
 /// assert_eq!(figure.title(), "An occluded direction counts: it adds 0 to the sum and 1 to n");
 /// # Ok::<(), unbiased::Error>(())
 /// ```
@@ -141,8 +141,8 @@ pub fn occluded_fraction(draws: u64, seed: u64) -> Result<Figure> {
         .titled("An occluded direction counts: it adds 0 to the sum and 1 to n", format!(
             "L̂/ρ with uniform directions against the fraction c that is occluded, from 0 to 0.8; the light \
              itself stays. The sum divided by all n is flat at {truth:.2}; divided by the number of visible \
-             directions it rises as {truth:.2}/(1 − c), to five times that. \
-             Points: {draws} directions each (seed {seed})."
+             directions it rises as {truth:.2}/(1 − c), to five times that. Points: {draws} directions each \
+             (seed {seed})."
         ))
         .draw()
 }
@@ -429,8 +429,8 @@ fn error_figure(
         .titled(format!("What the ways of sampling cost: error against {unit}"), format!(
             "Root mean square error relative to the truth against {unit}, both logarithmic. Light after at \
              most two bounces, by four ways of sampling: the lower a line, the fewer {unit} an error takes. \
-             {all_light} \
-             Lines: from a path's variance, bias and cost; points: 100 runs each (seed {seed}).{}",
+             {all_light} Lines: from a path's variance, bias and cost; points: 100 runs each (seed \
+             {seed}).{}",
             if left_out { " Ways whose variance may be infinite are left out." } else { "" }
         ))
         .draw()

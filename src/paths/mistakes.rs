@@ -147,16 +147,12 @@ const ABOUT: About = About {
     name: "paths in the box room",
     questions: &[("4.3", 0)],
     draw: "A draw is one of an estimate of the radiance that leaves p after `first` to `last` bounces, all \
-           summed; a\n\
-           bounce is a vertex between light and eye, p among them. The room is [−2, 2] × [−2, 2] × [0, 4] \
-           metres, z\n\
-           up; its walls, floor and ceiling reflect wall_albedo. The cube [−1/2, 1/2] × [−1/2, 1/2] × [0, 1] \
-           stands\n\
-           on the floor and reflects cube_albedo. All is diffuse. The light is the square |x|, |y| ≤ \
-           light_half_width\n\
-           of the ceiling, faces down, emits radiance and reflects nothing; every other face emits \
-           emission.\n\
-           p = (x, y, z) lies on a face; bounce 0 is what p itself emits.",
+           summed; a\nbounce is a vertex between light and eye, p among them. The room is [−2, 2] × [−2, 2] \
+           × [0, 4] metres, z\nup; its walls, floor and ceiling reflect wall_albedo. The cube [−1/2, 1/2] × \
+           [−1/2, 1/2] × [0, 1] stands\non the floor and reflects cube_albedo. All is diffuse. The light is \
+           the square |x|, |y| ≤ light_half_width\nof the ceiling, faces down, emits radiance and reflects \
+           nothing; every other face emits emission.\np = (x, y, z) lies on a face; bounce 0 is what p \
+           itself emits.",
 };
 
 /// The right estimator with one change.

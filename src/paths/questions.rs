@@ -66,19 +66,18 @@ pub(crate) const QUESTIONS: &[Question] = &[
         id: "4.1",
         title: "Paths of two bounces",
         statement: "The cube stands in a room; all faces are diffuse, and a light hangs in the ceiling. Draw \
-                    several paths of two bounces that end at p, on the cube's top, \
-                    and go on to the eye. Label ω_o, ω_i, p and the point p_j of the room that each of them \
-                    meets first.",
+                    several paths of two bounces that end at p, on the cube's top, and go on to the eye. \
+                    Label ω_o, ω_i, p and the point p_j of the room that each of them meets first.",
         hint: "Draw backwards, as a path tracer does: from p in a random direction ω_i to the point p_j that \
                it meets, and from there to the light. A bounce is a vertex between light and eye.",
         formula: "light → p_j → p → eye: two bounces, at p_j and at p, for every ω_i above the surface",
         latex: &[r"\text{light} \to \mathbf p_j \to \mathbf p \xrightarrow{\;\omega_o\;} \text{eye},
               \qquad \omega_{i,j} = \frac{\mathbf p_j - \mathbf p}{\lVert \mathbf p_j - \mathbf p\rVert}"],
-        answer: "From p the direction ω_i is drawn at random, uniformly or in proportion to cos θ, and a \
-                 ray is followed to p_j; from there the light is sampled. ω_i points away from p, towards \
-                 where the light comes from. From the cube's top only the walls above it and the ceiling \
-                 are visible; the ceiling lies in the light's plane and receives no light, so two-bounce \
-                 light comes by way of the walls.",
+        answer: "From p the direction ω_i is drawn at random, uniformly or in proportion to cos θ, and a ray \
+                 is followed to p_j; from there the light is sampled. ω_i points away from p, towards where \
+                 the light comes from. From the cube's top only the walls above it and the ceiling are \
+                 visible; the ceiling lies in the light's plane and receives no light, so two-bounce light \
+                 comes by way of the walls.",
         numbers: &[],
         wrong: &[
             Wrong {
@@ -115,8 +114,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
         latex: &[r"\text{light} \to \mathbf p_j' \to \mathbf p_j \to \mathbf p \xrightarrow{\;\omega_o\;}
               \text{eye}"],
         answer: "Every vertex draws its next direction around its own normal. A path of three bounces sees \
-                 more of the room than one of two: floor, ceiling and the cube's sides are reached now. \
-                 Each bounce multiplies the radiance by the albedo of the face, «ρ_wall» on a wall, so more \
+                 more of the room than one of two: floor, ceiling and the cube's sides are reached now. Each \
+                 bounce multiplies the radiance by the albedo of the face, «ρ_wall» on a wall, so more \
                  bounces contribute less, but never 0.",
         numbers: &[],
         wrong: &[
@@ -141,8 +140,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
         title: "The estimator for paths",
         statement: "n paths of two bounces are followed from the eye to p, to p_j in directions ω_ij drawn \
                     from p(ω), and to the light. Express the Monte Carlo estimator of the outgoing radiance \
-                    at p \
-                    in terms of the radiance L_o that leaves p_j.",
+                    at p in terms of the radiance L_o that leaves p_j.",
         hint: "It is the estimator of 3.4. From which point does the radiance come that arrives at p from \
                ω_ij, and in which direction does it leave that point?",
         formula: "L̂_o(p, ω_o) = 1/n Σ (ρ/π) L_o(p_j, −ω_ij) cos θ_ij / p(ω_ij), n counting all directions",

@@ -327,8 +327,8 @@ impl SideView {
             Edition::Solution if chosen.is_empty() => {
                 let why = if self.can_be_lit() {
                     format!(
-                        "Of {TRIED} paths (seed {seed}) none reached the light and could be made out in \
-                             a drawing"
+                        "Of {TRIED} paths (seed {seed}) none reached the light and could be made out in a \
+                         drawing"
                     )
                 } else {
                     "No light leaves p after that many bounces: there is no light, or what the paths meet \
@@ -338,8 +338,7 @@ impl SideView {
                 (
                     format!("No sampled paths of {word} bounces"),
                     format!(
-                        "The room seen from the side. {why}. \
-                    ωₒ leads from p to the eye, n is the normal."
+                        "The room seen from the side. {why}. ωₒ leads from p to the eye, n is the normal."
                     ),
                 )
             }
@@ -348,8 +347,8 @@ impl SideView {
                 format!(
                     "The room seen from the side. Numbered paths, as they were sampled (seed {seed}), go \
                      from p in a direction ωᵢ to a point p₁, p₂, … on another face{} and on to the light, \
-                     none through the cube; ωₒ leads from p to the eye. \
-                     Short arrows are normals n. What looks short may lead far in depth.",
+                     none through the cube; ωₒ leads from p to the eye. Short arrows are normals n. What \
+                     looks short may lead far in depth.",
                     if bounces > 2 { ", from there to p₁′, p₂′, …" } else { "" }
                 ),
             ),

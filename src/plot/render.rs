@@ -465,11 +465,10 @@ pub(super) fn document(
     body: &str,
 ) -> String {
     format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" \
-         viewBox=\"0 0 {across} {down}\" \
-         stroke-linejoin=\"round\" role=\"img\" aria-labelledby=\"{name}-title {name}-desc\">\n\
-         <title id=\"{name}-title\">{}</title>\n<desc id=\"{name}-desc\">{}</desc>\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>{body}</svg>\n",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 \
+         {across} {down}\" stroke-linejoin=\"round\" role=\"img\" aria-labelledby=\"{name}-title \
+         {name}-desc\">\n<title id=\"{name}-title\">{}</title>\n<desc id=\"{name}-desc\">{}</desc>\n<rect \
+         width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>{body}</svg>\n",
         escape(title),
         escape(description),
     )

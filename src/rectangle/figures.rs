@@ -117,15 +117,11 @@ pub fn sampling_errors(rectangle: Rectangle, seed: u64) -> Result<Figure> {
     Plot::of("2_1_rmse", 92.0, vec![left, right])
         .titled(title, format!(
             "Two panels on logarithmic axes, for [{a}, {b}] × [{c}, {d}]. Left: the root-mean-square error \
-             of n \
-             independent pairs for each function of the test set, measured over {REPEATS} estimates (marks), \
-             on \
-             the exact lines of slope −1/2; where the variance is infinite, as for 1/√(x² + y²) about the \
-             origin, the marks follow no such line. Right: the Gaussian by independent pairs (slope −1/2), \
-             all \
-             pairs (−1/4 in evaluations), jittered points (−1) and scrambled Sobol points (nearly −3/2). \
-             Seed \
-             {seed}."
+             of n independent pairs for each function of the test set, measured over {REPEATS} estimates \
+             (marks), on the exact lines of slope −1/2; where the variance is infinite, as for 1/√(x² + y²) \
+             about the origin, the marks follow no such line. Right: the Gaussian by independent pairs \
+             (slope −1/2), all pairs (−1/4 in evaluations), jittered points (−1) and scrambled Sobol points \
+             (nearly −3/2). Seed {seed}."
         ))
         .draw()
 }
@@ -257,9 +253,8 @@ pub fn running_means(rectangle: Rectangle, seed: u64) -> Result<Figure> {
     Plot::of("2_1_running_mean", 62.0, panels)
         .titled(title, format!(
             "Three panels, one a seed: the mean of n independent draws of area × e^(−X²−Y²) over [{a}, {b}] \
-             × [{c}, \
-             {d}] against n from 10 to 100 000 on a logarithmic axis, in its 95 % interval, which narrows as \
-             1/√n; a thin line at the truth, {}.",
+             × [{c}, {d}] against n from 10 to 100 000 on a logarithmic axis, in its 95 % interval, which \
+             narrows as 1/√n; a thin line at the truth, {}.",
             typeset(truth, 6)
         ))
         .draw()

@@ -150,8 +150,7 @@ const ABOUT: About = About {
     name: "integral over a rectangle",
     questions: &[("2.1", 0)],
     draw: "A draw is one of an estimate of the integral of f(x, y) over [a, b] × [c, d], made of one point \
-           of it:\n\
-           one: f = 1; squares: f = x² + y²; product: f = xy; plane: f = x + 2y.",
+           of it:\none: f = 1; squares: f = x² + y²; product: f = xy; plane: f = x + 2y.",
 };
 
 type Text = &'static str;

@@ -44,9 +44,9 @@ pub(crate) const QUESTIONS: &[Question] = &[Question {
     id: "2.1",
     title: "A double integral from uniform random numbers",
     statement: "A source of random numbers hands out 2n of them, n uniform on [«x_low», «x_high»] and n on \
-                [«y_low», «y_high»], each independent of all the others. How do you estimate the integral \
-                of a function f(x, y) over the rectangle [«x_low», «x_high»] × [«y_low», «y_high»] from \
-                them, without bias? And which condition must f satisfy?",
+                [«y_low», «y_high»], each independent of all the others. How do you estimate the integral of \
+                a function f(x, y) over the rectangle [«x_low», «x_high»] × [«y_low», «y_high»] from them, \
+                without bias? And which condition must f satisfy?",
     hint: "Each draw is f over the density of the point drawn. What is the density of a pair of independent \
            numbers?",
     formula: "⟨Fₙ⟩ = 1/n Σ f(Xᵢ, Yᵢ)/p(Xᵢ, Yᵢ) = «w h»/n Σ f(Xᵢ, Yᵢ), if ∫∫ |f| is finite",
@@ -57,13 +57,13 @@ pub(crate) const QUESTIONS: &[Question] = &[Question {
         r"E\left[\frac{f(X, Y)}{p(X, Y)}\right] = \iint \frac{f(x, y)}{p(x, y)}\, p(x, y)\,dx\,dy = F",
         r"\mathrm{Var}\,\langle F_n \rangle = \frac1n \left(«w h» \iint f^2\,dx\,dy - F^2\right)",
     ],
-    answer: "Take the numbers in pairs. The two of a pair are independent, so the density of the pair is \
-             the product of theirs, 1/«w h» all over the rectangle, and each f(Xᵢ, Yᵢ)/p(Xᵢ, Yᵢ) has the \
-             mean F: p cancels in the integral. The average of n of them therefore has the mean F for every \
-             n, as long as E|f| is finite. An error bar needs more, a finite E f²: 1/√(x² + y²) about the \
-             origin has a finite mean, but an infinite variance. All n² pairs also give an unbiased \
-             estimate, at n times the cost. The variance may fall; for f = g(x) + h(y) it does not. \
-             Spreading the points evenly does better: one in each cell of a grid, or a scrambled Sobol set.",
+    answer: "Take the numbers in pairs. The two of a pair are independent, so the density of the pair is the \
+             product of theirs, 1/«w h» all over the rectangle, and each f(Xᵢ, Yᵢ)/p(Xᵢ, Yᵢ) has the mean F: \
+             p cancels in the integral. The average of n of them therefore has the mean F for every n, as \
+             long as E|f| is finite. An error bar needs more, a finite E f²: 1/√(x² + y²) about the origin \
+             has a finite mean, but an infinite variance. All n² pairs also give an unbiased estimate, at n \
+             times the cost. The variance may fall; for f = g(x) + h(y) it does not. Spreading the points \
+             evenly does better: one in each cell of a grid, or a scrambled Sobol set.",
     numbers: &[Number {
         part: "",
         symbol: "c",
@@ -92,8 +92,7 @@ pub(crate) const QUESTIONS: &[Question] = &[Question {
         Wrong {
             answer: "c/n Σ f(Xᵢ, Xᵢ)",
             slip: "X used again for Y: the points lie on a diagonal. f = xy then gets the mean of x² in \
-                   place of \
-                   that of xy, while f = 1 and, on a square, f = x² + y² look right",
+                   place of that of xy, while f = 1 and, on a square, f = x² + y² look right",
         },
         Wrong {
             answer: "it is only right for large n",

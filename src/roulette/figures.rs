@@ -173,8 +173,8 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
             format!("What roulette costs and buys: the product is least at q* {}", equals(best, 3)),
             format!(
                 "Variance, cost 1/(1 − q) and their product against q, logarithmic, for ρ = {albedo} and v = \
-             {v}. The variance is infinite up to q = ρ² {}, shaded, and falls; the cost rises; the \
-             product is least at q* {}. Marked: q = {} and q*.",
+                 {v}. The variance is infinite up to q = ρ² {}, shaded, and falls; the cost rises; the \
+                 product is least at q* {}. Marked: q = {} and q*.",
                 equals(edge, 4),
                 equals(best, 4),
                 typeset(q, 12)
@@ -265,8 +265,8 @@ pub fn truncation(model: &LightModel, q: f64, max_k: u64, replicates: u64, seed:
         .titled("Truncated paths stop improving; roulette overtakes them", format!(
             "Root mean square error against the number of vertices C, both logarithmic, for ρ = {albedo}, v \
              = {v}. Roulette with q = {kept} falls as 1/√C. Paths cut after k ≤ {short} and k ≤ {long} level \
-             off at \
-             their bias; the crossings are marked. Points: {replicates} runs each, seeds from {seed}."
+             off at their bias; the crossings are marked. Points: {replicates} runs each, seeds from \
+             {seed}."
         ))
         .draw()
 }

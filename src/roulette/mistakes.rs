@@ -123,8 +123,7 @@ const ABOUT_WRAPPED: About = About {
     name: "Russian roulette",
     questions: &[("5", 0)],
     draw: "A draw is one X_rr: Russian roulette with this continuation probability p_rr, played on X = 1/2 + \
-           U,\n\
-           U a uniform number of X's own. The mean of X is 1.",
+           U,\nU a uniform number of X's own. The mean of X is 1.",
 };
 
 const ABOUT_BOUNCES: About = About {
@@ -132,8 +131,7 @@ const ABOUT_BOUNCES: About = About {
     name: "number of bounces",
     questions: &[("5.1", 0), ("5.1(iii)", 0), ("5.2", 1)],
     draw: "A draw is one number of bounces N = 0, 1, 2, …: how often a path goes on before it ends, going on \
-           with\n\
-           probability p_rr each time.",
+           with\nprobability p_rr each time.",
 };
 
 type Text = &'static str;

@@ -61,9 +61,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
         id: "5.1",
         title: "Bounces at p_rr = «p_rr»",
         statement: "With Russian roulette a ray goes on with probability p_rr at every step, and X becomes \
-                    X/p_rr if it does and 0 if not. Let \
-                    p_rr = «p_rr», and N ≥ 0 the number of bounces. (i) What is P(N = 0)? (ii) What is P(N = \
-                    2)? (iii) What is E[N]?",
+                    X/p_rr if it does and 0 if not. Let p_rr = «p_rr», and N ≥ 0 the number of bounces. (i) \
+                    What is P(N = 0)? (ii) What is P(N = 2)? (iii) What is E[N]?",
         hint: "N = k means going on k times and then stopping. For E[N], count the trials up to the first \
                stop, and then do not count the stop.",
         formula: "P(N = k) = p_rr^k (1 − p_rr): «1 − p_rr» for k = 0, «p_rr² (1 − p_rr)» for k = 2; E[N] = \
@@ -131,8 +130,8 @@ pub(crate) const QUESTIONS: &[Question] = &[
         ],
         wrong: &[],
         on_the_original: Some(
-            "p_rr must lie in (0, 1], since p_rr = 0 loses all light, and the coin must be independent of \
-             X; the original says neither. “Geometric” counts trials there (mean 1/p), and failures in some \
+            "p_rr must lie in (0, 1], since p_rr = 0 loses all light, and the coin must be independent of X; \
+             the original says neither. “Geometric” counts trials there (mean 1/p), and failures in some \
              libraries (mean 1/p − 1): check which one a library means.",
         ),
         example: "q5_1_bounces",
@@ -148,11 +147,9 @@ pub(crate) const QUESTIONS: &[Question] = &[
         formula: "E[N] = p_rr/(1 − p_rr) = «p_rr/(1 − p_rr)»",
         latex: &[r"E[N] = \frac{1}{1 - «p_rr»} - 1 = «1/(1 − p_rr)» - 1 = «p_rr/(1 − p_rr)»"],
         answer: "A share «1 − p_rr» of the rays stops at once. That is cheap, and it stays unbiased; but \
-                 with an albedo of «ρ» every \
-                 bounce that is taken weighs ρ/p_rr = «ρ/p_rr» times as much as the one before, and where \
-                 p_rr ≤ ρ² = «ρ²» \
-                 the variance is infinite: the mean of a thousand such paths is then usually too dark, its \
-                 error bar too short.",
+                 with an albedo of «ρ» every bounce that is taken weighs ρ/p_rr = «ρ/p_rr» times as much as \
+                 the one before, and where p_rr ≤ ρ² = «ρ²» the variance is infinite: the mean of a thousand \
+                 such paths is then usually too dark, its error bar too short.",
         numbers: &[EXPECTED_BOUNCES],
         wrong: &[],
         on_the_original: None,

@@ -97,12 +97,10 @@ pub fn comparison(name: &'static str, title: &str, comparison: &Comparison) -> R
         description: format!(
             "Root mean square error{} against draws, counted work and seconds, all axes logarithmic, and the \
              efficiency as a part of the best one's, for {names}.{left_out} The lines follow from the \
-             variance, \
-             bias, work and time of a draw as they were measured (seed {}); a line ends where a bias that is \
-             not seen may take over. An arrow spans the factor in time between the slowest and the fastest \
-             without bias \
-             at the same error, if the difference is more than three std errors, and at least a factor of 2. \
-             What has no variance, or an infinite one, has no line.",
+             variance, bias, work and time of a draw as they were measured (seed {}); a line ends where a \
+             bias that is not seen may take over. An arrow spans the factor in time between the slowest and \
+             the fastest without bias at the same error, if the difference is more than three std errors, \
+             and at least a factor of 2. What has no variance, or an infinite one, has no line.",
             if comparison.truth == 0.0 { "" } else { " relative to the truth" },
             comparison.seed
         ),

@@ -16,14 +16,14 @@ const ERRORS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 impl Comparison {
     /// An explanation of the table's columns.
     pub const EXPLAINED: &str = "σ is the standard deviation of a draw (relative to the truth), the next \
-        column the work of a draw, its time the median of 17 batches ± half the difference of their \
-        quartiles. \
-        Efficiency is 1/(σ² × time) divided by the best one's; rank is 1 + the number of rivals that are \
-        better by more than three std errors of the difference, so that those of rank 1 are not told apart \
-        from the best. \
-        The columns “to …” give the time on one core until the root mean square error is this fraction of \
-        the truth, at least the time of one draw, which for jittered and Sobol points is a whole replicate; \
-        “≥” means that a bias too small to be seen may prevent it.";
+                                 column the work of a draw, its time the median of 17 batches ± half the \
+                                 difference of their quartiles. Efficiency is 1/(σ² × time) divided by the \
+                                 best one's; rank is 1 + the number of rivals that are better by more than \
+                                 three std errors of the difference, so that those of rank 1 are not told \
+                                 apart from the best. The columns “to …” give the time on one core until the \
+                                 root mean square error is this fraction of the truth, at least the time of \
+                                 one draw, which for jittered and Sobol points is a whole replicate; “≥” \
+                                 means that a bias too small to be seen may prevent it.";
 
     /// The names of the table's columns.
     pub fn columns(&self) -> Vec<&'static str> {

@@ -105,14 +105,25 @@ impl Table {
         self.rows.iter().map(object).collect::<Vec<_>>().join("\n")
     }
 
+    /// Each column's width in characters.
+    fn widths(&self) -> Vec<usize> {
+        let cells = |column: usize| {
+            let rows = std::iter::once(&self.columns).chain(&self.rows);
+            rows.filter_map(move |row| row.get(column)).map(|cell| cell.chars().count())
+        };
+        (0..self.columns.len()).map(|column| cells(column).max().unwrap_or(0)).collect()
+    }
+
+    /// The width of its lines in characters.
+    pub(crate) fn width(&self) -> usize {
+        self.widths().iter().map(|width| width + 2).sum()
+    }
+
     /// The table in lines of plain text, columns aligned.
     pub(crate) fn lines(&self) -> Vec<String> {
-        let all: Vec<&Vec<String>> = std::iter::once(&self.columns).chain(&self.rows).collect();
-        let width = |column: usize| {
-            all.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
-        };
-        let widths: Vec<usize> = (0..self.columns.len()).map(width).collect();
-        all.iter()
+        let widths = self.widths();
+        std::iter::once(&self.columns)
+            .chain(&self.rows)
             .map(|row| {
                 let padded = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
                 padded.collect::<Vec<_>>().join("  ").trim_end().to_owned()

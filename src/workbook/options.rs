@@ -487,8 +487,8 @@ impl Options {
                     [draws] => format!(" --draws {draws}"),
                     _ => {
                         remark = Some(
-                            "where N is the number of draws of the row to be repeated: the clock ended \
-                             each row after a different number",
+                            "where N is the number of draws of the row to be repeated: the clock ended each \
+                             row after a different number",
                         );
                         " --draws N".into()
                     }

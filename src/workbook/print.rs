@@ -400,13 +400,15 @@ pub(super) fn help(questions: &[&'static Question]) -> Result<()> {
         let stated = question.at(&Options::default())?;
         text += &format!("{}  {}\n\n{}\n\n", question.id, stated.title, stated.statement);
     } else {
-        text += "The worksheet: every question answered in closed form, by an estimator with its error \
-                 bar, and by a figure.\n\n";
+        text += "The worksheet: every question answered in closed form, by an estimator with its error bar, \
+                 and by a figure.\n\n";
     }
     text += "Options
-    --draws N            draws of every estimator (default: each question's own number)
-    --error E            draws until the std error is E, in the units of the answer, by a pilot run: never \
-    fewer than the pilot's (10⁶ where they are cheap), and about 5 s of them a row at most
+    --draws N            draws of every estimator (default: each question's own \
+             number)
+    --error E            draws until the std error is E, in the units of the answer, by \
+             a pilot run: never fewer than the pilot's (10⁶ where they are cheap), and about 5 s of them a \
+             row at most
     --seconds S          draws for S seconds an estimator";
     if questions.len() > 1 {
         text += " (0.1 s at most where many are compared, in the last part of the page)";

@@ -62,12 +62,11 @@ pub fn errors_in_ulps() -> Result<Figure> {
     Plot::of("extremes_ulps", 72.0, vec![quantile, cdf])
         .titled(
             "Near 0 the obvious formulas lose all digits; ln_1p and exp_m1 lose none",
-            "Errors in units of the last place, logarithmic, against u and x from 1e-18 to 1. −ln(1 \
-                      − u) and 1 − exp(−x) are off by one part in 1e16 of 1, which for a small argument is \
-                      all of it: up to 1e16 units of the last place, \
-                      where the result is 0. ln_1p and exp_m1 stay within one everywhere, the fast logarithm \
-                      does where u is a whole number of 2⁻⁵³, as uniform numbers are, and so does the \
-                      product with sinh, within two. Errors below 0.05 are drawn there.",
+            "Errors in units of the last place, logarithmic, against u and x from 1e-18 to 1. −ln(1 − u) and \
+             1 − exp(−x) are off by one part in 1e16 of 1, which for a small argument is all of it: up to \
+             1e16 units of the last place, where the result is 0. ln_1p and exp_m1 stay within one \
+             everywhere, the fast logarithm does where u is a whole number of 2⁻⁵³, as uniform numbers are, \
+             and so does the product with sinh, within two. Errors below 0.05 are drawn there.",
         )
         .draw()
 }
@@ -159,11 +158,10 @@ pub fn running_mean_errors(seed: u64) -> Result<Figure> {
             "A sum that rounds drifts away from the mean",
             format!(
                 "The error of the running mean of 10¹⁰ + U relative to the mean, both axes logarithmic, over \
-             {DRAWS} draws (seed {seed}). Summed in f32 it reaches {worst:.1} %, and is {last:.1} % at the \
-             end; in f64 it drifts too; the mean that an Estimate keeps stays at the rounding of its last \
-             digit. The thin \
-             line is the standard error, below which an error does not matter. Errors below 1e-18 are drawn \
-             there."
+                 {DRAWS} draws (seed {seed}). Summed in f32 it reaches {worst:.1} %, and is {last:.1} % at \
+                 the end; in f64 it drifts too; the mean that an Estimate keeps stays at the rounding of its \
+                 last digit. The thin line is the standard error, below which an error does not matter. \
+                 Errors below 1e-18 are drawn there."
             ),
         )
         .draw()

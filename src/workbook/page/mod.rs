@@ -161,7 +161,7 @@ fn narrow(figure: &Figure) -> bool {
 /// A table of plain text.
 fn aligned(table: &super::Table) -> Markup {
     html! {
-        table.many[table.columns.len() > 6] {
+        table.many[table.columns.len() > 6 && table.width() > 100] {
             caption { (prose(&table.caption)) }
             thead { tr { @for name in &table.columns { th scope="col" { (name) } } } }
             tbody { @for row in &table.rows { tr {
