@@ -77,7 +77,7 @@ pub fn answer(options: &Options) -> Result<Appendix> {
         )?,
         figures::comparison(
             "trade_endings",
-            "Roulette falls on where truncation levels off",
+            "Roulette keeps improving where truncation levels off",
             &endings.found,
         )?,
         placed_figure("trade_placed_2", "Up to 2 bounces, independent and placed", &placements, TWO)?,

@@ -146,7 +146,7 @@ fn draws_that_fit_another_probe_are_told_so() {
     let other = samples(20_000, &|u| -(1.0 - u).ln() / 0.37);
     let arguments = ["--question", "1.1", "--draws-from", "-"];
     let (_, said) = check_mine(&arguments, &other);
-    let told = "Those for probe 1 fit the truth of probe 2, “mean of X, λ = 0.37”:";
+    let told = "The draws for probe 1 fit the truth of probe 2, “mean of X, λ = 0.37”:";
     assert!(said.replace('\n', " ").contains(told), "{said}");
     let (_, said) = check_mine(&[&arguments[..], &["--json"]].concat(), &other);
     assert_eq!(json(&said)[0]["probes"][0]["fits_probes"], serde_json::json!([2]));
