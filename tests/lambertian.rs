@@ -2,8 +2,8 @@
 //! classic mistakes with the ratios that give them away.
 //!
 //! Means and variances of bounded draws use Bernstein's inequality with the exact variance (α = 1e-13), valid
-//! for every n; the means of the mistakes 7.5 std errors (6.4e-14, their draws being bounded and n = 4e5). What
-//! holds for any light is in tests/estimators.rs.
+//! for every n; the means of the mistakes 7.5 std errors (6.4e-14, their draws being bounded and n = 4e5).
+//! What holds for any light is in tests/estimators.rs.
 
 mod common;
 
@@ -209,7 +209,8 @@ fn lights_of_1e300_keep_their_error_bar() {
         let general = surface.estimator(|w| 1e300 * light.incoming(w), hemisphere);
         let run = estimate(&general, Budget::Draws(draws), common::seed(312)).unwrap();
         assert_eq!(run.variance(), Some(INF));
-        assert!(run.z(1e300 * light.reflected(surface)).unwrap().abs() <= common::deviations(7.5)); // sees 1.3 % of it
+        // sees 1.3 % of it
+        assert!(run.z(1e300 * light.reflected(surface)).unwrap().abs() <= common::deviations(7.5));
         let (mean, variance) = (light.reflected(surface), light.variance(surface, hemisphere));
         let fourth = power_moment(hemisphere, 1.0, 1.0, mean, 4);
         let spread = band(draws, fourth - variance * variance, 4.0);

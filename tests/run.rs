@@ -103,8 +103,8 @@ fn generators_side_by_side_share_nothing() {
 }
 
 /// Any two of 64 × 64 neighbouring (seed, block) pairs: no word shared among their first 16, and half of the
-/// bits differ. 6.6e4 words of 64 bits collide by chance with probability 1.2e-10. Each pair of first words differs in 32 ± 4 bits; the mean over 4032
-/// neighbours has std error 0.063, 7 of them 0.44 (2.6e-12).
+/// bits differ. 6.6e4 words of 64 bits collide by chance with probability 1.2e-10. Each pair of first
+/// words differs in 32 ± 4 bits; the mean over 4032 neighbours has std error 0.063, 7 of them 0.44 (2.6e-12).
 #[test]
 fn neighbouring_seeds_and_blocks_share_nothing() {
     let base = common::seed(0);

@@ -336,8 +336,8 @@ fn known(f: Integrand, r: &Rectangle) -> (f64, Option<f64>, [f64; 2]) {
     (f.integral(r).unwrap(), f.variance(r), [low, most].map(|y| r.area() * y * (1.0 + 1e-12)))
 }
 
-/// Jittered xy: within a cell of w_c × h_c about (x̄, ȳ), Var XY = x̄² h_c²/12 + ȳ² w_c²/12 + w_c² h_c²/144, and
-/// Σ x̄² over the columns is s (x̄² + (w² − w_c²)/12).
+/// Jittered xy: within a cell of w_c × h_c about (x̄, ȳ), Var XY = x̄² h_c²/12 + ȳ² w_c²/12 + w_c² h_c²/144,
+/// and Σ x̄² over the columns is s (x̄² + (w² − w_c²)/12).
 fn jittered_variance_of_xy(r: &Rectangle, side: u64) -> f64 {
     let ([a, b], [c, d], s) = (r.x_range(), r.y_range(), side as f64);
     let ([w, h], [wc, hc]) = ([b - a, d - c], [(b - a) / s, (d - c) / s]);
@@ -347,8 +347,8 @@ fn jittered_variance_of_xy(r: &Rectangle, side: u64) -> f64 {
     r.area().powi(2) * of_cells / (s * s)
 }
 
-/// xy about (x̄, ȳ) is x̄ȳ + x̄ h V + ȳ w U + w h UV with uncorrelated parts; x alone falls into 2ᵐ cells with one
-/// uniform point in each, 1/(12n³).
+/// xy about (x̄, ȳ) is x̄ȳ + x̄ h V + ȳ w U + w h UV with uncorrelated parts; x alone falls into 2ᵐ cells with
+/// one uniform point in each, 1/(12n³).
 fn sobol_variance_of_xy(r: &Rectangle, m: u32) -> f64 {
     let ([a, b], [c, d]) = (r.x_range(), r.y_range());
     let ([w, h], [x, y]) = ([b - a, d - c], [0.5 * (a + b), 0.5 * (c + d)]);
@@ -482,8 +482,8 @@ fn over_rectangles(pick: &mut Pick) -> Vec<Row> {
 
 // ---- section 3
 
-/// A sky that depends on the direction in every way: c₀ + c₁ cos θ + c₂ cos² θ + c₃ x² + c₄ (1 + y) + c₅ \[the
-/// half towards φ is lit\].
+/// A sky that depends on the direction in every way: c₀ + c₁ cos θ + c₂ cos² θ + c₃ x² + c₄ (1 + y) + c₅
+/// \[the half towards φ is lit\].
 #[derive(Clone, Copy)]
 struct Sky {
     parts: [f64; 6],
@@ -681,8 +681,8 @@ fn of_paths(pick: &mut Pick) -> Vec<Row> {
             let twice = Scene { light_half_width: h, point: [x, y, 1.0], ..scene };
             let scale = scale * scene.wall_albedo;
             let mean = BoxRoom::new(twice).unwrap().two_bounces().unwrap();
-            // at a wall, a = 2 − h or more from the light, cos θ cos θ′/r² is az/(a² + z²)² at most, and that at
-            // most 0.325/a²
+            // at a wall, a = 2 − h or more from the light, cos θ cos θ′/r² is az/(a² + z²)² at most, and
+            // that at most 0.325/a²
             let sampled = scale * weight * 4.0 * h * h / PI * 0.325 / (2.0 - h).powi(2);
             let most = if by_chance { scale * weight * weight } else { sampled };
             let name = format!("Exactly(2), {directions:?}, {light:?}");
@@ -739,8 +739,8 @@ fn of_paths(pick: &mut Pick) -> Vec<Row> {
     rows
 }
 
-/// All light in the sheet's own scene: up to three bounces by the sheet, to 15 from 3000 sets of 65,536 points
-/// to 9e-7, and all of it as known.
+/// All light in the sheet's own scene: up to three bounces by the sheet, to 15 from 3000 sets of 65,536
+/// points to 9e-7, and all of it as known.
 fn sheets_paths() -> Vec<Row> {
     let mut rows = Vec::new();
     let (scene, cosine) = (Scene::default(), Hemisphere::Cosine);

@@ -1,5 +1,5 @@
-//! What tests share: seeds, proptest's settings, numbers of every kind, comparisons that say what they give in
-//! false alarms, quadrature, a furnace and a generator that is stuck.
+//! What tests share: seeds, proptest's settings, numbers of every kind, comparisons that say what they give
+//! in false alarms, quadrature, a furnace and a generator that is stuck.
 #![allow(dead_code, unused_imports)] // each test takes what it needs
 
 mod alarms;
