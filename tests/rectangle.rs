@@ -875,9 +875,8 @@ proptest! {
         let Ok(r) = Rectangle::new(x, y) else { return Ok(()) };
         prop_assert!(r.area().is_normal() && r.area() > 0.0 && (1.0 / r.area()).is_normal());
         let mut rng = Stream::new(n, 0);
-        let points = [r.sample(&mut rng), r.sample(&mut rng), r.sample(&mut Stuck(u64::MAX)), [x[0], y[0]],
-            [x[1],
-            y[1]]];
+        let ends = [r.sample(&mut Stuck(u64::MAX)), [x[0], y[0]], [x[1], y[1]]];
+        let points = [r.sample(&mut rng), r.sample(&mut rng)].into_iter().chain(ends);
         for point in points {
             prop_assert!(x[0] <= point[0] && point[0] <= x[1] && y[0] <= point[1] && point[1] <= y[1]);
             prop_assert_eq!(r.pdf(&point), 1.0 / r.area());
