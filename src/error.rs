@@ -77,7 +77,8 @@ pub enum Error {
         reason: String,
     },
     /// A draw lies outside the range claimed for it.
-    #[error("draw {draw} of block {block} is {} (seed {seed}), outside the range [{}, {}] claimed for it", parseable(*.value), parseable(.range[0]), parseable(.range[1]))]
+    #[error("draw {draw} of block {block} is {} (seed {seed}), outside the range [{}, {}] claimed for \
+             it", parseable(*.value), parseable(.range[0]), parseable(.range[1]))]
     OutOfRange {
         /// The check's seed.
         seed: u64,
@@ -113,7 +114,8 @@ pub enum Error {
         draws: u64,
     },
     /// The std error asked for takes more draws than the run allows.
-    #[error("{}, more than the limit of {limit}: ask for a larger error, allow more draws, or give a time", takes(*.std_error, *.needed))]
+    #[error("{}, more than the limit of {limit}: ask for a larger error, allow more draws, or give a \
+             time", takes(*.std_error, *.needed))]
     Budget {
         /// The standard error asked for.
         std_error: f64,

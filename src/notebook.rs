@@ -173,7 +173,8 @@ impl Show for Diagnosis {
                 @if index == 0 {
                     (said(good(self), line))
                 } @else {
-                    div style=(if line.starts_with("  ") { "margin-left: 2em" } else { "margin-left: 1em" }) { (line.trim_start()) }
+                    div style=(if line.starts_with("  ") { "margin-left: 2em" } else { "margin-left: \
+                        1em" }) { (line.trim_start()) }
                 }
             }
         };
@@ -361,7 +362,8 @@ fn said(good: Option<bool>, sentence: &str) -> Markup {
         Some(false) => ("✗", "#D55E00"),
         None => ("?", "#888888"),
     };
-    html! { div style=(format!("border-left: 4px solid {colour}; padding-left: 0.6em")) { b { (mark) } " " (sentence) } }
+    html! { div style=(format!("border-left: 4px solid {colour}; padding-left: \
+    0.6em")) { b { (mark) } " " (sentence) } }
 }
 
 #[cfg(test)]

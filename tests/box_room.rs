@@ -292,7 +292,8 @@ proptest! {
             let way = next.position() - at.position();
             // it went where it was sent
             let off = way - direction * way.dot(direction);
-            prop_assert!(off.length() <= 1e-14 && way.dot(direction) >= -1e-15, "{:?} {} {:?}", at, direction, next);
+            prop_assert!(off.length() <= 1e-14 && way.dot(direction) >= -1e-15, "{:?} {} \
+                {:?}", at, direction, next);
             at = next;
         }
     }

@@ -448,11 +448,11 @@ fn random_intervals_are_integrated() {
     }
 }
 
-/// On one axis of several, alone or on a slope along the others: 200, none wrong.
+/// On one axis of several, alone or on a slope along the others: 100, none wrong.
 #[test]
 fn intervals_of_one_axis_are_right_or_refused() {
     let mut rng = Stream::new(common::seed(71), 0);
-    let (mut answered, cases) = (0, common::draws(200));
+    let (mut answered, cases) = (0, common::draws(100));
     for case in 0..cases {
         let dimensions = if case % 8 == 7 { 3 } else { 2 };
         let axis = (dimensions as f64 * rng.uniform()) as usize;
@@ -475,11 +475,11 @@ fn intervals_of_one_axis_are_right_or_refused() {
     assert!(2 * answered >= cases, "{answered} of {cases}");
 }
 
-/// The edge of a disc lies aslant: 200 of any size, on a slope or not, are refused, and if not, right.
+/// The edge of a disc lies aslant: 100 of any size, on a slope or not, are refused, and if not, right.
 #[test]
 fn random_discs_are_right_or_refused() {
     let mut rng = Stream::new(common::seed(72), 0);
-    for _ in 0..common::draws(200) {
+    for _ in 0..common::draws(100) {
         // the smallest fill 1.1e-4 of the square: missed by 2¹⁸ points with a probability of e⁻²⁹
         let radius = 0.5 * 0.012f64.powf(rng.uniform());
         let [x, y] = [0; 2].map(|_| radius + (1.0 - 2.0 * radius) * rng.uniform());

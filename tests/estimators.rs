@@ -25,7 +25,7 @@ use common::{NEARLY_ONE, alarm};
 const ALPHA: f64 = 1e-14;
 
 /// Variants with drawn parameters.
-const VARIANTS: u64 = 10;
+const VARIANTS: u64 = 4;
 
 fn seed(variant: u64, n: usize) -> u64 {
     common::seed(1000 * variant + n as u64)

@@ -621,17 +621,16 @@ fn no_line_is_wider_than_a_narrow_terminal() {
             assert!(too_long(&text).is_empty(), "{name} {arguments:?}: {:#?}", too_long(&text));
             text.lines().count()
         };
-        let printed = lines(&[]);
+        let beside = ["trade", "extremes"].contains(&name.as_str());
+        let printed = lines(if beside { &[] } else { &["--draws", "2000"] });
         lines(&["--help"]);
-        if name == "worksheet" {
-            assert!(printed < 60, "{printed} lines");
-            lines(&["--verbose", "--draws", "2000"]);
-        }
-        if !["trade", "extremes"].contains(&name.as_str()) {
+        assert!(name != "worksheet" || printed < 60, "{printed} lines");
+        if !beside {
             lines(&["--hint"]);
             lines(&["--edition", "student"]);
         }
-        if name.starts_with('q') {
+        // 4.3 takes seconds for its figures
+        if name.starts_with('q') && !name.starts_with("q4_3") {
             lines(&["--verbose", "--seconds", "0.001"]);
         }
     }
@@ -752,7 +751,7 @@ fn too_few_draws_are_not_judged() {
     assert!(text.contains('✓') && !text.contains("too few"), "{text}");
     // a ring that no draw will hit: 0 ± 0 is no evidence, for all its draws
     let text = said("q3_6_variance", &["--width", "1e-9", "--draws", "200000"]);
-    assert_eq!(text.matches("too few draws to judge").count(), 2, "{text}");
+    assert_eq!(text.matches("no variance Careful").count(), 2, "{text}");
     assert!(!text.contains('✗'), "{text}");
 }
 
@@ -835,9 +834,15 @@ fn people_see_the_interval_the_z_and_the_command_that_repeats_it() {
 fn a_variants_truths_are_those_of_its_estimators() {
     for name in ["Ada", "Łukasz Żółć"] {
         let seed = common::seed(77).to_string();
-        let (draws, out) = ("20000", folder_of_its_own());
-        let options = ["--json", "--variant", name, "--draws", draws, "--seed", &seed, "--out"];
-        let rows = rows(&run("worksheet", &[&options[..], &[out.to_str().unwrap()]].concat()));
+        let options = ["--variant", name, "--draws", "20000", "--seed", &seed, "--json", "--out"];
+        // 4.3 takes seconds for its figures, and its rows take sets of points as draws
+        let some = examples().into_iter().filter(|example| !example.starts_with("q4_3"));
+        let rows: Vec<Value> = some
+            .flat_map(|example| {
+                let out = folder_of_its_own();
+                rows(&run(&example, &[&options[..], &[out.to_str().unwrap()]].concat()))
+            })
+            .collect();
         let options = Options::default().variant(name, workbook::questions()).unwrap();
         let answers: Vec<&Value> = rows.iter().filter(|row| row["kind"] == "answer").collect();
         let mut compared = 0;
@@ -849,7 +854,7 @@ fn a_variants_truths_are_those_of_its_estimators() {
                 compared += 1;
             }
         }
-        assert!(compared > 40, "{name}: {compared}");
+        assert!(compared > 30, "{name}: {compared}");
         let mut in_the_key = Vec::new();
         for question in workbook::questions() {
             for number in question.numbers.iter().filter(|number| number.over_n.is_none()) {

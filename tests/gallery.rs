@@ -53,7 +53,7 @@ fn gallery() -> impl Iterator<Item = (&'static Exercise, &'static Mistake)> {
 }
 
 fn seeds() -> u64 {
-    std::env::var("UNBIASED_GALLERY_SEEDS").ok().and_then(|seeds| seeds.parse().ok()).unwrap_or(3)
+    std::env::var("UNBIASED_GALLERY_SEEDS").ok().and_then(|seeds| seeds.parse().ok()).unwrap_or(2)
 }
 
 fn diagnosed(attempt: &Attempt<'_>, draws: u64, seed: u64) -> Diagnosis {

@@ -950,7 +950,8 @@ proptest! {
             let variance = r.area() * double([x, y], |x, y| (f.at(x, y) - mean).powi(2));
             let scale = r.area() * double([x, y], |x, y| f.at(x, y).powi(2));
             if let Some(got) = f.variance(&r) {
-                prop_assert!((got - variance).abs() <= 1e-11 * variance + 1e-26 * scale, "{}: {} for {}", f, got, variance);
+                prop_assert!((got - variance).abs() <= 1e-11 * variance + 1e-26 * scale, "{}: {} for \
+                    {}", f, got, variance);
             } else {
                 prop_assert!(f == Integrand::Gaussian && variance < scale / 500.0);
             }
@@ -959,7 +960,8 @@ proptest! {
             if let Some(got) = f.all_pairs_variance(&r, n) {
                 let n = n as f64;
                 let truth = (variance + (n - 1.0) * (along_x + along_y)) / (n * n);
-                prop_assert!((got - truth).abs() <= 1e-11 * truth + 1e-26 * scale, "{}: {} for {}", f, got, truth);
+                prop_assert!((got - truth).abs() <= 1e-11 * truth + 1e-26 * scale, "{}: {} for \
+                    {}", f, got, truth);
             }
         }
         // div(r/|r|) = 1/|r| in the plane: ∫∫ 1/r is the flux of the unit vector through the four sides

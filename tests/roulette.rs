@@ -650,7 +650,8 @@ proptest! {
         prop_assert!((model.mean() - mean).abs() <= 1e-12 * mean);
         let variance = second_moment(rho, v, q) - mean * mean;
         let found = model.roulette(q)?.variance();
-        prop_assert!((found - variance).abs() <= 1e-11 * (variance + mean * mean), "{} for {}", found, variance);
+        prop_assert!((found - variance).abs() <= 1e-11 * (variance + mean * mean), "{} for \
+            {}", found, variance);
 
         let truncated: TruncatedPaths = model.truncated(max_k)?;
         let powers = || (0..=max_k as i32).map(|k| rho.powi(k));
