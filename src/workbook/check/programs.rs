@@ -220,7 +220,7 @@ const PARTS: [Parts; 5] = [
     return light == "one" ? 1 : light == "cos" ? z : light == "cos2" ? z * z : z < 0.25 ? 16 : 0;
 }
 "#,
-            estimator: r#"    double z = uniform(), r = std::sqrt(1 - z * z), phi = 6.283185307179586 * uniform();
+            estimator: r#"    double z = uniform(), r = sqrt(1 - z * z), phi = 6.283185307179586 * uniform();
     return albedo * radiance(light, r * std::cos(phi), r * std::sin(phi), z);"#,
         },
     },
