@@ -75,7 +75,6 @@ pub(crate) const QUESTIONS: &[Question] = &[
              It also writes F⁻¹(x); the argument of an inverse cdf is a probability, u.",
         ),
         example: "q1_1_exponential",
-        module: "inversion",
         parameters: &[RATE],
         derived: &[Letter { value: |_| Ok(0.75), ..U }],
     },
@@ -123,7 +122,6 @@ pub(crate) const QUESTIONS: &[Question] = &[
             "F and p take x, F⁻¹ takes u: the inverse is drawn against an axis of its own here.",
         ),
         example: "q1_2_one_sample",
-        module: "inversion",
         parameters: &[
             RATE,
             Parameter {
@@ -158,7 +156,6 @@ pub(crate) const QUESTIONS: &[Question] = &[
              is u.",
         ),
         example: "q1_3_axes",
-        module: "inversion",
         parameters: &[RATE],
         derived: &[],
     },

@@ -99,7 +99,6 @@ pub(crate) const QUESTIONS: &[Question] = &[
              of 1 m on the floor, a square light of «2s» m in the middle of the ceiling.",
         ),
         example: "q4_1_two_bounces",
-        module: "paths",
         parameters: &[WALL_ALBEDO, CUBE_ALBEDO, RADIANCE, LIGHT_HALF_WIDTH, POINT],
         derived: &[],
     },
@@ -131,7 +130,6 @@ pub(crate) const QUESTIONS: &[Question] = &[
         ],
         on_the_original: None,
         example: "q4_2_three_bounces",
-        module: "paths",
         parameters: &[WALL_ALBEDO, CUBE_ALBEDO, RADIANCE, LIGHT_HALF_WIDTH, POINT],
         derived: &[],
     },
@@ -184,7 +182,6 @@ pub(crate) const QUESTIONS: &[Question] = &[
              radiance, not all of it.",
         ),
         example: "q4_3_paths",
-        module: "paths",
         parameters: &[
             WALL_ALBEDO,
             CUBE_ALBEDO,

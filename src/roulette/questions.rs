@@ -135,7 +135,6 @@ pub(crate) const QUESTIONS: &[Question] = &[
              libraries (mean 1/p − 1): check which one a library means.",
         ),
         example: "q5_1_bounces",
-        module: "roulette",
         parameters: &[P_RR],
         derived: &[],
     },
@@ -154,7 +153,6 @@ pub(crate) const QUESTIONS: &[Question] = &[
         wrong: &[],
         on_the_original: None,
         example: "q5_2_few_bounces",
-        module: "roulette",
         parameters: &[Parameter { default: Value::Number(0.2), ..P_RR }, ALBEDO, VISIBILITY],
         derived: &[],
     },
@@ -189,7 +187,6 @@ pub(crate) const QUESTIONS: &[Question] = &[
         ],
         on_the_original: None,
         example: "q5_3_more_bounces",
-        module: "roulette",
         parameters: &[
             Parameter { help: "the continuation probability q of the paths, in (0, 1)", ..P_RR },
             ALBEDO,

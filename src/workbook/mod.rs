@@ -89,8 +89,6 @@ pub struct Question {
     pub on_the_original: Option<&'static str>,
     /// The file in `examples/`, without `.rs`.
     pub example: &'static str,
-    /// The module that holds its estimators.
-    pub module: &'static str,
     /// Its own options.
     pub parameters: &'static [Parameter],
     /// Further letters of its formulas, computed from the parameters.
