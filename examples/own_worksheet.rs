@@ -64,7 +64,6 @@ static NEEDLE: Question = Question {
     wrong: &[],
     on_the_original: None,
     example: "own_worksheet",
-    module: "own_worksheet",
     parameters: &[LENGTH],
     derived: &[],
 };
@@ -129,7 +128,6 @@ static DISC: Question = Question {
     wrong: &[],
     on_the_original: None,
     example: "own_worksheet",
-    module: "own_worksheet",
     parameters: &[ANGLE],
     derived: &[SIN_SQUARED],
 };

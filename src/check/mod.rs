@@ -17,6 +17,7 @@ mod measure;
 mod unbiased;
 mod wealth;
 
+#[cfg(feature = "workbook")]
 pub(crate) use attempt::seed_of;
 pub use attempt::{Attempt, measure};
 pub use counterexample::Counterexample;
