@@ -44,7 +44,7 @@ mod q5_3;
 mod trade;
 
 fn main() -> ExitCode {
-    let answers: [(&str, AnswerFn); 16] = [
+    let answers: [(&str, AnswerFn); _] = [
         ("1.1", q1_1::answer),
         ("1.2", q1_2::answer),
         ("1.3", q1_3::answer),
