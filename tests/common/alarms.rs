@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// Test files with the probability that, for fresh seeds, any of their comparisons fails though nothing is
 /// wrong. All others are arithmetic, or run with fixed seeds.
-pub const BUDGETS: [(&str, f64); 13] = [
+pub const BUDGETS: [(&str, f64); 14] = [
     ("estimators", 1e-10),
     ("inversion", 5e-11),
     ("rectangle", 2e-10),
@@ -17,6 +17,7 @@ pub const BUDGETS: [(&str, f64); 13] = [
     ("estimate", 5e-12),
     ("run", 3e-10),
     ("trade", 2e-11),
+    ("examples", 1e-11),
     // at their own α, which their programs state
     ("check and gallery", 9e-11),
 ];
