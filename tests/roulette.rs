@@ -16,8 +16,9 @@ use rand::distr::Distribution;
 use statrs::distribution::{Discrete, DiscreteCDF};
 use statrs::statistics::Distribution as _;
 use unbiased::inversion::Exponential;
+use unbiased::placement::sobol;
 use unbiased::roulette::{LightModel, Roulette, TruncatedPaths};
-use unbiased::{Budget, Error, Estimate, Estimator, Run, Stream, estimate, from_fn};
+use unbiased::{Budget, Doubt, Error, Estimate, Estimator, Run, Stream, estimate, from_fn};
 
 const Z: f64 = 7.0;
 const ALPHA: f64 = 1e-12;
@@ -838,5 +839,20 @@ fn golden_values() {
 fn paths_say_their_q() {
     for q in [0.8, 0.2, 1e-300] {
         assert_eq!(LightModel::new(0.5, 0.25).unwrap().roulette(q).unwrap().q(), q);
+    }
+}
+
+/// What the parameters tell of an error bar is told by whatever holds the estimator, too.
+#[test]
+fn a_doubt_is_told_through_boxes_references_and_placements() {
+    let paths = |q| LightModel::new(0.8, 0.5).unwrap().roulette(q).unwrap();
+    for (q, doubt) in
+        [(0.2, Some(Doubt::InfiniteVariance)), (0.64, Some(Doubt::InfiniteVariance)), (0.65, None)]
+    {
+        let boxed: Box<dyn Estimator> = Box::new(paths(q));
+        assert_eq!(paths(q).doubt(), doubt);
+        assert_eq!(<&dyn Estimator>::doubt(&(&paths(q) as &dyn Estimator)), doubt);
+        assert_eq!(boxed.doubt(), doubt);
+        assert_eq!(sobol(paths(q), 4).unwrap().doubt(), doubt);
     }
 }
