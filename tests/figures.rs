@@ -191,7 +191,7 @@ proptest! {
         face in 0usize..11, u in 0.0f64..=1.0, v in 0.0f64..=1.0, half_width in 0.0f64..=2.0, seed: u64,
     ) {
         let face = unbiased::paths::room::Face::ALL[face];
-        let [low, high] = face.bounds();
+        let [low, high] = common::bounds(face);
         let at = |t: [f64; 3]| [low.x + t[0] * (high.x - low.x), low.y + t[1] * (high.y - low.y),
             low.z + t[2] * (high.z - low.z)];
         let point = if low.x == high.x { at([0.0, u, v]) } else if low.y == high.y { at([u, 0.0,

@@ -24,7 +24,7 @@ use unbiased::inversion::mistakes::Samples;
 use unbiased::lambertian::hemisphere::Hemisphere;
 use unbiased::lambertian::mistakes::Reflection;
 use unbiased::paths::mistakes::LightOfPaths;
-use unbiased::paths::room::{BoxRoom, Face, nearest_hit, visible};
+use unbiased::paths::room::{BoxRoom, nearest_hit, visible};
 use unbiased::paths::{FindLight, Paths};
 use unbiased::rectangle::mistakes::Integral;
 use unbiased::roulette::Roulette;
@@ -170,7 +170,7 @@ fn right() -> Vec<(&'static str, Attempt<'static>)> {
 fn shared_sample(p: &LightOfPaths, rng: &mut Stream) -> f64 {
     let (room, bounces): (&BoxRoom, _) = (&p.room, p.bounces());
     let h = room.scene().light_half_width;
-    let y = DVec3::new(h * (2.0 * rng.uniform() - 1.0), h * (2.0 * rng.uniform() - 1.0), Face::ROOM_HEIGHT);
+    let y = DVec3::new(h * (2.0 * rng.uniform() - 1.0), h * (2.0 * rng.uniform() - 1.0), 4.0);
     let (mut vertex, mut throughput, mut light) = (room.point(), 1.0, 0.0);
     for k in 0..=*bounces.end() {
         if bounces.contains(&k) && !room.is_light(&vertex) {
@@ -355,7 +355,7 @@ fn probes_have_the_right_truths() {
     close(Reflection::exercise(), &[1.6 / 3.0, 0.8, 0.61, 0.305, 0.61, 0.61, 0.61]);
     close(Wrapped::exercise(), &[1.0; 4]);
     close(NumberOfBounces::exercise(), &[4.0, 0.25, 0.83 / 0.17, 99.0]);
-    // the light of one and of two bounces by pencil and by quadrature: tests/box_room.rs
+    // the light of one and of two bounces by pencil and by quadrature: tests/scene.rs
     let paths = truths(LightOfPaths::exercise());
     let powers = |range: std::ops::RangeInclusive<i32>| range.map(|k| 0.8f64.powi(k)).sum::<f64>();
     for (found, known) in [

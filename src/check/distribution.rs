@@ -103,7 +103,7 @@ pub fn distributed_as(
 /// use unbiased::lambertian::hemisphere::{Direction, Hemisphere::{Cosine, Uniform}};
 /// use unbiased::check;
 ///
-/// let claimed = |w: &Direction| [Cosine.cdf_of_cos_theta(w.cos_theta()), w.phi() / TAU];
+/// let claimed = |w: &Direction| [w.cos_theta().powi(2), w.phi() / TAU];
 /// assert!(check::points(&Cosine, claimed, 0.01, 1e-12, 1)?.agrees);
 /// assert!(!check::points(&Uniform, claimed, 0.01, 1e-12, 1)?.agrees);
 /// # Ok::<(), unbiased::Error>(())

@@ -130,22 +130,6 @@ impl Exponential {
         Ok((-u).ln_1p().abs() / self.rate)
     }
 
-    /// The x with P(X > x) = u: −ln(u)/λ for u in \[0, 1\]. Accurate for small u, where F⁻¹(1 − u) is not.
-    ///
-    /// ```
-    /// let exponential = unbiased::inversion::Exponential::new(1.0)?;
-    /// let x = exponential.inverse_survival(1e-100)?; // 1 − 1e-100 rounds to 1
-    /// assert!((exponential.survival(x) / 1e-100 - 1.0).abs() < 1e-13);
-    /// # Ok::<(), unbiased::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// If u is not in \[0, 1\].
-    pub fn inverse_survival(&self, u: f64) -> Result<f64> {
-        require_probability(u)?;
-        Ok(u.ln().abs() / self.rate)
-    }
-
     /// λx and its rounding error: half an ulp of an exponent near 700 is 300 ulp of its exponential.
     fn times(&self, x: f64) -> (f64, f64) {
         let product = self.rate * x;

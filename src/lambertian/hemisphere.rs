@@ -143,7 +143,7 @@ impl Hemisphere {
     ///
     /// let direction = Hemisphere::Cosine.direction_of(0.75, 0.5)?;
     /// assert_eq!(direction.cos_theta(), 0.5);
-    /// assert_eq!(Hemisphere::Cosine.uniforms_of(&direction)?, [0.75, 0.5]);
+    /// assert_eq!(direction.phi(), std::f64::consts::PI);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
     ///
@@ -153,33 +153,6 @@ impl Hemisphere {
         require("the uniform number u", u, (0.0..=1.0).contains(&u), "in [0, 1]")?;
         require("the uniform number v", v, (0.0..=1.0).contains(&v), "in [0, 1]")?;
         Ok(self.warp([u, v]))
-    }
-
-    /// The uniform numbers \[u, v\] that [`direction_of`](Self::direction_of) turns into `direction`.
-    ///
-    /// # Errors
-    /// If the direction points below the horizon, where both densities are 0.
-    pub fn uniforms_of(self, direction: &Direction) -> Result<[f64; 2]> {
-        let cos = direction.cos_theta();
-        require("cos θ", cos, cos >= 0.0, "0 or more: nothing is drawn below the horizon")?;
-        let sin_squared = direction.sin_theta().powi(2);
-        // from sin θ near the normal and from cos θ near the horizon, where each is accurate
-        let u = match self {
-            Self::Uniform if cos > 0.5 => sin_squared / (1.0 + cos),
-            Self::Uniform => 1.0 - cos,
-            Self::Cosine if sin_squared < 0.5 => sin_squared,
-            Self::Cosine => 1.0 - cos * cos,
-        };
-        Ok([u, direction.phi() / TAU])
-    }
-
-    /// P(cos θ ≤ c): c for `Uniform`, c² for `Cosine`; 0 for c < 0 and 1 for c > 1.
-    pub fn cdf_of_cos_theta(self, c: f64) -> f64 {
-        let c = c.clamp(0.0, 1.0);
-        match self {
-            Self::Uniform => c,
-            Self::Cosine => c * c,
-        }
     }
 }
 

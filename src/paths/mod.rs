@@ -31,7 +31,6 @@
 //! where the light is sampled, a path that hits it adds nothing. What the faces emit is always found by
 //! chance.
 
-use glam::DVec3;
 use rand::distr::Distribution;
 
 use crate::doubt::Doubt;
@@ -39,9 +38,10 @@ use crate::error::{Result, require, require_count};
 use crate::estimator::{Density, Estimator, from_fn};
 use crate::fast::Real;
 use crate::lambertian::hemisphere::{Direction, Hemisphere};
-use crate::paths::room::{BoxRoom, Face, Vertex, nearest};
+use crate::paths::room::{BoxRoom, Vertex, nearest};
 use crate::stream::Stream;
 
+mod doubt;
 #[cfg(feature = "workbook")]
 pub mod figures;
 pub mod mistakes;
@@ -51,7 +51,12 @@ pub mod room;
 mod side_by_side;
 #[cfg(feature = "workbook")]
 mod side_view;
+mod single;
+mod trace;
 mod way;
+
+use trace::Event;
+pub use trace::{Path, Sample};
 
 /// How a path finds the light: by BSDF sampling alone, or by next-event estimation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -82,7 +87,7 @@ pub enum Bounces {
 }
 
 /// The largest number of bounces that can be asked for.
-pub const MOST_BOUNCES: u32 = 64;
+const MOST_BOUNCES: u32 = 64;
 
 /// The largest continuation probability: the mean number of bounces is q/(1 − q).
 const MOST_Q: f64 = 0.9999;
@@ -128,89 +133,35 @@ impl Paths {
     /// Paths from the room's point p.
     ///
     /// # Errors
-    /// If more than [`MOST_BOUNCES`] are to be counted; if q is not in (0, 0.9999\], as a path with q = 1
+    /// If more than 64 bounces are to be counted; if q is not in (0, 0.9999\], as a path with q = 1
     /// never ends; or if paths end by their throughput and an albedo is above 0.999, as they would be too
     /// long.
     pub fn new(room: BoxRoom, bounces: Bounces, directions: Hemisphere, light: FindLight) -> Result<Self> {
-        let count = |k: u32| {
-            require_count(
-                "the number of bounces",
-                k.into(),
-                k <= MOST_BOUNCES,
-                "at most 64 (without a limit, roulette ends the paths)",
-            )
-        };
         let (counted, ending) = match bounces {
-            Bounces::Exactly(k) => {
-                count(k)?;
-                ([k, k], Ending::Never)
+            Bounces::Exactly(k) => ([k, k], Ending::Never),
+            Bounces::UpTo(k) => ([0, k], Ending::Never),
+            Bounces::All(q) => ([0, u32::MAX], Ending::Roulette(q)),
+            Bounces::AllByThroughput => ([0, u32::MAX], Ending::ByThroughput),
+        };
+        match ending {
+            Ending::Never => {
+                let allowed = "at most 64 (without a limit, roulette ends the paths)";
+                let most = counted[1];
+                require_count("the number of bounces", most.into(), most <= MOST_BOUNCES, allowed)?;
             }
-            Bounces::UpTo(k) => {
-                count(k)?;
-                ([0, k], Ending::Never)
+            Ending::Roulette(q) => {
+                let allowed = "above 0 and at most 0.9999, where a path has ten thousand bounces";
+                require("the continuation probability q", q, q > 0.0 && q <= MOST_Q, allowed)?;
             }
-            Bounces::All(q) => {
-                require(
-                    Q,
-                    q,
-                    q > 0.0 && q <= MOST_Q,
-                    "above 0 and at most 0.9999, where a path has ten thousand bounces",
-                )?;
-                ([0, u32::MAX], Ending::Roulette(q))
-            }
-            Bounces::AllByThroughput => {
+            Ending::ByThroughput => {
                 let albedo = most_albedo(&room);
                 let allowed = "at most 0.999 where nothing but absorption ends a path (or choose a q or a \
                                number of bounces)";
                 require("the largest albedo", albedo, albedo <= MOST_ALBEDO, allowed)?;
-                ([0, u32::MAX], Ending::ByThroughput)
             }
-        };
+        }
         let paths = Self { room, counted, ending, directions, light, numbers: 0 };
         Ok(Self { numbers: paths.numbers_of_each(), ..paths })
-    }
-
-    /// The same paths computed in `f32`: about twice as fast and less accurate. They take the same random
-    /// numbers, and draws are summed in `f64`.
-    ///
-    /// The mean is biased by rounding, and by the coarser grid k·2⁻²⁴ of the uniform numbers. No such bias
-    /// was measured in the sheet's scene: with cosine directions and next-event estimation it is 0 ± 7e-7 of
-    /// the one-bounce radiance in 10⁹ paths, and 0 ± 1.6e-5 of that of up to fifteen bounces in 1.5·10⁸.
-    ///
-    /// Radiances are scaled, so any size that a scene allows will do. What cannot be scaled is the ratio of
-    /// the strongest and the weakest contribution.
-    ///
-    /// ```
-    /// use unbiased::paths::room::{BoxRoom, Scene};
-    /// use unbiased::lambertian::hemisphere::Hemisphere;
-    /// use unbiased::paths::{Bounces, FindLight, Paths};
-    /// use unbiased::{Budget, estimate};
-    ///
-    /// let room = BoxRoom::new(Scene::default())?;
-    /// let once = Paths::new(room, Bounces::Exactly(1), Hemisphere::Cosine, FindLight::BySampling)?;
-    /// let found = estimate(&once.in_f32()?, Budget::Draws(100_000), 1)?;
-    /// assert!(found.z(0.2728543591976926).unwrap().abs() < 5.0);
-    /// # Ok::<(), unbiased::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// If a path's throughput could leave the range of `f32`: if the smallest albedo above 0, to the power of
-    /// the smallest number of bounces that counts (two, if fewer count and two may), is below 1e-25; or if
-    /// the faces emit less than 1e-10 of L_e A/π, or of L_e if the light is found by chance.
-    pub fn in_f32(self) -> Result<PathsF32> {
-        let scene = self.room.scene();
-        let albedos = [scene.wall_albedo, scene.cube_albedo].into_iter().filter(|albedo| *albedo > 0.0);
-        let [fewest, most] = self.counted;
-        // at most 64
-        let bounces = fewest.max(most.min(2)) as i32;
-        let throughput = albedos.fold(1.0, f64::min).powi(bounces);
-        let allowed = "at least 1e-25 in single precision";
-        require("the least albedo, to the power of the bounces,", throughput, throughput >= 1e-25, allowed)?;
-        let part = scene.emission / self.light();
-        let ok = part == 0.0 || part.is_nan() || part >= 1e-10;
-        let allowed = "0 or at least 1e-10 in single precision";
-        require("the faces' emission, in parts of the light's,", part, ok, allowed)?;
-        Ok(PathsF32(self))
     }
 
     /// Whether the light is found by sampling it.
@@ -236,119 +187,14 @@ impl Paths {
     }
 
     /// The scene.
-    ///
-    /// ```
-    /// # use unbiased::paths::room::{BoxRoom, Scene};
-    /// # use unbiased::lambertian::hemisphere::Hemisphere;
-    /// # use unbiased::paths::{Bounces, FindLight, Paths};
-    /// let room = BoxRoom::new(Scene::default())?;
-    /// let paths = Paths::new(room, Bounces::UpTo(3), Hemisphere::Cosine, FindLight::BySampling)?;
-    /// assert_eq!((*paths.room(), paths.most_bounces()), (room, 3));
-    /// # Ok::<(), unbiased::Error>(())
-    /// ```
     pub fn room(&self) -> &BoxRoom {
         &self.room
     }
 
     /// The largest number of bounces that counts, `u32::MAX` without a limit.
-    pub fn most_bounces(&self) -> u32 {
+    #[cfg(feature = "workbook")]
+    fn most_bounces(&self) -> u32 {
         self.counted[1]
-    }
-
-    /// The reason that [`doubt`](Estimator::doubt) gives.
-    fn reason(&self) -> Option<String> {
-        let albedo = most_albedo(&self.room);
-        let (spread, shown) = match self.directions {
-            Hemisphere::Cosine => (1.0, "ρ²"),
-            Hemisphere::Uniform => (4.0 / 3.0, "(4/3)ρ²"),
-        };
-        let growth = spread * albedo * albedo;
-        let infinite = "the variance may be infinite, and the error bar too short:";
-        let touches = self.room.scene().light_half_width >= 2.0 && self.light == FindLight::BySampling;
-        match self.ending {
-            Ending::Roulette(q) if q <= growth => {
-                return Some(format!(
-                    "{infinite} q = {q} is not above {shown} = {growth:.4} for the largest albedo"
-                ));
-            }
-            // throughputs of cosine directions never exceed 1 then, and those of uniform ones grow while they
-            // do
-            Ending::ByThroughput if self.directions == Hemisphere::Uniform && growth >= 1.0 => {
-                return Some(format!(
-                    "{infinite} the squared throughput of a path grows by {shown} = {growth:.4} a bounce for \
-                     the largest albedo, and nothing ends a path of throughput 1 or more"
-                ));
-            }
-            _ => {}
-        }
-        if touches && self.counted[1] > 1 {
-            return Some(format!(
-                "{infinite} the light touches the walls, where its samples weigh without bound"
-            ));
-        }
-        let reasons = [
-            (
-                self.kurtosis_of_throughputs(),
-                "uniform directions make most throughputs far too small and a few very large",
-            ),
-            (1.0 / self.found_by_chance(), "few paths find the light"),
-            (
-                self.kurtosis_of_samples(),
-                "the light is so near the walls that a few of its samples outweigh all others",
-            ),
-        ];
-        let draws: f64 = reasons.iter().map(|(kurtosis, _)| kurtosis).product();
-        // leave out reasons that do not matter
-        let told: Vec<&str> =
-            reasons.iter().filter(|(kurtosis, _)| *kurtosis >= 10.0).map(|(_, reason)| *reason).collect();
-        (draws >= A_MILLION).then(|| {
-            let why = told.join(", and ");
-            format!("{why}, so that the error bar of fewer than about {draws:.0e} draws means nothing")
-        })
-    }
-
-    /// An approximate E X⁴/(E X²)² of a light sample at a wall vertex, for a light close to the wall.
-    fn kurtosis_of_samples(&self) -> f64 {
-        let beside = Face::ROOM_HALF_WIDTH - self.room.scene().light_half_width;
-        // farther away the whole light counts, not only its edge
-        let near = self.light == FindLight::BySampling && self.counted[1] > 1 && beside < 0.5;
-        if near { 8.0 / beside.powi(3) } else { 1.0 }
-    }
-
-    /// An upper bound for E X⁴/(E X²)² of a path without roulette, in a room where every vertex sees the same
-    /// irradiance.
-    fn kurtosis_of_throughputs(&self) -> f64 {
-        if self.ending != Ending::Never || self.directions == Hemisphere::Cosine {
-            return 1.0;
-        }
-        let albedo = most_albedo(&self.room);
-        // with next-event estimation one direction less is drawn
-        let less = u32::from(self.samples_light() && self.room.scene().emission == 0.0);
-        let [fewest, most] = self.counted.map(|bounces| bounces.saturating_sub(less) as i32);
-        // relative to the term of the fewest bounces, as only ratios count
-        let sum = |factor: f64| {
-            let terms = (fewest..=most).map(|k| albedo.powi(k - fewest) * factor.powf(f64::from(k)));
-            terms.fold([0.0, 0.0], |[sum, squares], term| [sum + term, squares + term * term])
-        };
-        // ‖ΣX‖₄ ≤ Σ ‖X‖₄; E (ΣX)² is at least Σ E X² and at least (Σ E X)²
-        let ([fourth, _], [mean, _], [_, square]) =
-            (sum(3.2f64.powf(0.25)), sum(1.0), sum((4.0f64 / 3.0).sqrt()));
-        let ratio = fourth * fourth / square.max(mean * mean);
-        ratio * ratio
-    }
-
-    /// The approximate fraction of paths that hit the light: at each bounce, the light's share of the area of
-    /// all faces.
-    fn found_by_chance(&self) -> f64 {
-        let scene = self.room.scene();
-        let dark = scene.light_half_width == 0.0 || scene.emission > 0.0 || self.counted[1] == 0;
-        if self.light == FindLight::BySampling || dark {
-            return 1.0;
-        }
-        let [fewest, most] = self.counted;
-        let area: f64 = Face::ALL.iter().map(|face| face.area()).sum();
-        let bounces = f64::from(most - fewest.max(1).min(most)) + 1.0;
-        (self.room.light_area() / area * bounces).min(1.0)
     }
 
     /// An unbiased estimate of the radiance that leaves `vertex`, in W m⁻² sr⁻¹, along one random path. It
@@ -356,33 +202,6 @@ impl Paths {
     #[inline]
     pub fn light_from(&self, vertex: &Vertex, rng: &mut Stream) -> f64 {
         self.walk(vertex, rng, |_| ())
-    }
-
-    /// One path with its vertices, for drawing: the one that [`draw`](Estimator::draw) follows with the same
-    /// stream.
-    ///
-    /// ```
-    /// # use unbiased::paths::room::{BoxRoom, Scene};
-    /// # use unbiased::lambertian::hemisphere::Hemisphere;
-    /// # use unbiased::paths::{Bounces, FindLight, Paths};
-    /// # use unbiased::{Estimator, Stream};
-    /// let room = BoxRoom::new(Scene::default())?;
-    /// let twice = Paths::new(room, Bounces::Exactly(2), Hemisphere::Cosine, FindLight::BySampling)?;
-    /// let path = twice.trace(&mut Stream::new(1, 0));
-    /// // p and p_j; the light is sampled at p_j
-    /// assert_eq!((path.vertices[0], path.vertices.len(), path.samples[0].from), (room.point(), 2, 1));
-    /// assert_eq!(path.light, twice.draw(&mut Stream::new(1, 0)));
-    /// # Ok::<(), unbiased::Error>(())
-    /// ```
-    pub fn trace(&self, rng: &mut Stream) -> Path {
-        let mut path = Path { vertices: Vec::new(), samples: Vec::new(), light: 0.0 };
-        path.light = self.walk(&self.room.point(), rng, |event| match event {
-            Event::Vertex(vertex) => path.vertices.push(*vertex),
-            Event::Light { point, visible } => {
-                path.samples.push(Sample { from: path.vertices.len().saturating_sub(1), point, visible });
-            }
-        });
-        path
     }
 
     /// Follows one path from `start`, and returns the radiance that it finds.
@@ -519,29 +338,6 @@ impl Estimator for Paths {
     }
 }
 
-/// [`Paths`] in single precision; see [`Paths::in_f32`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PathsF32(Paths);
-
-impl Estimator for PathsF32 {
-    fn draw(&self, rng: &mut Stream) -> f64 {
-        side_by_side::draw::<f32>(&self.0, rng)
-    }
-
-    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
-        side_by_side::fill::<f32>(&self.0, rng, draws);
-    }
-
-    fn doubt(&self) -> Option<Doubt> {
-        self.0.doubt()
-    }
-}
-
-const Q: &str = "the continuation probability q";
-
-/// The number of draws of a typical run.
-const A_MILLION: f64 = 1e6;
-
 /// L_e A/π, the weight of a light sample without cos θ cos θ′/r² and the albedo.
 fn power(room: &BoxRoom) -> f64 {
     room.scene().radiance * room.light_area() * std::f64::consts::FRAC_1_PI
@@ -561,34 +357,6 @@ fn by_throughput<T: Real>(throughput: T) -> T {
 #[inline(always)]
 fn on_the_grid<T: Real>(p: T) -> T {
     (p / T::STEP).ceil() * T::STEP
-}
-
-/// What happens along a path.
-enum Event<'a> {
-    Vertex(&'a Vertex),
-    Light { point: DVec3, visible: bool },
-}
-
-/// A traced path.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Path {
-    /// Its vertices, starting with p; the last one may be on the light.
-    pub vertices: Vec<Vertex>,
-    /// The light samples drawn along it.
-    pub samples: Vec<Sample>,
-    /// The radiance that it finds: the draw.
-    pub light: f64,
-}
-
-/// A point drawn on the light.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sample {
-    /// The index of the vertex that it was drawn for.
-    pub from: usize,
-    /// Where it is.
-    pub point: DVec3,
-    /// Whether that vertex sees it.
-    pub visible: bool,
 }
 
 /// The estimator of 4.3, f_r L̂_o(p_j) cos θ/p(ω): radiance that reaches p from the points p_j, in directions

@@ -27,7 +27,6 @@ mod replicate;
 
 pub use genz::{Family, Genz};
 pub use integrand::Integrand;
-pub use replicate::AllPairs;
 
 use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};

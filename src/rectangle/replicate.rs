@@ -2,9 +2,8 @@
 
 use super::Rectangle;
 use crate::error::{Result, require_count};
-use crate::estimator::Estimator;
+use crate::estimator::{Estimator, from_fn};
 use crate::placement::{jittered, sobol};
-use crate::stream::Stream;
 
 impl Rectangle {
     /// The estimator A/n² Σᵢ Σⱼ f(Xᵢ, Yⱼ) over all n² pairs of n values of x and n of y.
@@ -27,11 +26,23 @@ impl Rectangle {
     ///
     /// # Errors
     /// If n is not from 1 to 2¹⁶.
-    pub fn all_pairs<F: Fn(f64, f64) -> f64 + Sync>(self, f: F, n: u64) -> Result<AllPairs<F>> {
+    pub fn all_pairs<F: Fn(f64, f64) -> f64 + Sync>(self, f: F, n: u64) -> Result<impl Estimator> {
         // a draw is 2³² evaluations at most
         let ok = (1..=1 << 16).contains(&n);
         let n = require_count("the number n of values", n, ok, "from 1 to 65536")? as u32;
-        Ok(AllPairs { rectangle: self, f, n })
+        let evaluations = u64::from(n) * u64::from(n);
+        Ok(from_fn(move |rng| {
+            let xs: Vec<f64> = (0..n).map(|_| self.x_at(rng.uniform())).collect();
+            let mut mean = Mean::new(self.area, evaluations);
+            for _ in 0..n {
+                let y = self.y_at(rng.uniform());
+                for &x in &xs {
+                    mean.add(f(x, y));
+                }
+            }
+            rng.count_evaluations(evaluations);
+            mean.times_area()
+        }))
     }
 
     /// The estimator A/s² Σ f over one uniform point in each cell of an s × s grid: [`jittered`] points for
@@ -62,30 +73,6 @@ impl Rectangle {
     /// If n is not from 1 to 2¹⁶, after which the sequence would repeat.
     pub fn sobol<F: Fn(f64, f64) -> f64 + Sync>(self, f: F, points: u64) -> Result<impl Estimator> {
         sobol(self.independent(f), points)
-    }
-}
-
-/// The estimator over all n² pairs; see [`Rectangle::all_pairs`].
-#[derive(Debug, Clone, Copy)]
-pub struct AllPairs<F> {
-    rectangle: Rectangle,
-    f: F,
-    n: u32,
-}
-
-impl<F: Fn(f64, f64) -> f64 + Sync> Estimator for AllPairs<F> {
-    fn draw(&self, rng: &mut Stream) -> f64 {
-        let xs: Vec<f64> = (0..self.n).map(|_| self.rectangle.x_at(rng.uniform())).collect();
-        let evaluations = u64::from(self.n) * u64::from(self.n);
-        let mut mean = Mean::new(self.rectangle.area, evaluations);
-        for _ in 0..self.n {
-            let y = self.rectangle.y_at(rng.uniform());
-            for &x in &xs {
-                mean.add((self.f)(x, y));
-            }
-        }
-        rng.count_evaluations(evaluations);
-        mean.times_area()
     }
 }
 

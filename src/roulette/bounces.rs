@@ -3,7 +3,7 @@
 use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
 
-use super::{P_RR, Roulette, coin, one_minus_power, power};
+use super::{P_RR, coin, one_minus_power, power};
 use crate::error::{Result, require};
 use crate::estimator::{Estimator, from_uniforms};
 use crate::fast;
@@ -18,9 +18,9 @@ use crate::stream::Stream;
 /// p_rr = 1 a path never ends: N is infinite, and every P(N = k) is 0. (Worksheet 5.1 to 5.3.)
 ///
 /// ```
-/// use unbiased::roulette::BounceCount;
+/// use unbiased::roulette::Roulette;
 ///
-/// let bounces = BounceCount::new(0.75)?;
+/// let bounces = Roulette::new(0.75)?.bounces();
 /// assert_eq!(bounces.pmf(0), 1.0 / 4.0);
 /// assert_eq!(bounces.pmf(2), 9.0 / 64.0);
 /// assert_eq!(bounces.mean(), 3.0);
@@ -28,22 +28,10 @@ use crate::stream::Stream;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BounceCount {
-    p_rr: f64,
+    pub(super) p_rr: f64,
 }
 
 impl BounceCount {
-    /// The distribution for this continuation probability.
-    ///
-    /// # Errors
-    /// Those of [`Roulette::new`].
-    pub fn new(p_rr: f64) -> Result<Self> {
-        Ok(Roulette::new(p_rr)?.bounces())
-    }
-
-    pub(super) fn of(p_rr: f64) -> Self {
-        Self { p_rr }
-    }
-
     /// P(N = k) = pᵏ (1 − p).
     pub fn pmf(&self, k: u64) -> f64 {
         power(self.p_rr, k.into()) * (1.0 - self.p_rr)
@@ -77,7 +65,7 @@ impl BounceCount {
     /// at p = 1 for every u > 0.
     ///
     /// ```
-    /// let bounces = unbiased::roulette::BounceCount::new(0.5)?;
+    /// let bounces = unbiased::roulette::Roulette::new(0.5)?.bounces();
     /// assert_eq!(bounces.quantile(0.75)?, 1);
     /// assert_eq!(bounces.quantile(0.76)?, 2);
     /// # Ok::<(), unbiased::Error>(())
@@ -103,12 +91,14 @@ impl BounceCount {
         Ok(high)
     }
 
-    /// N sampled by flipping one coin per bounce. Expected cost: 1/(1 − p) coins per draw.
+    /// N sampled by flipping one coin per bounce. Expected cost: 1/(1 − p) coins per draw; n bounces or more
+    /// have probability pⁿ, and take n coins. A draw never ends only if the generator keeps giving numbers
+    /// below p.
     ///
     /// ```
-    /// use unbiased::{Budget, estimate, roulette::BounceCount};
+    /// use unbiased::{Budget, estimate, roulette::Roulette};
     ///
-    /// let bounces = BounceCount::new(0.8)?;
+    /// let bounces = Roulette::new(0.8)?.bounces();
     /// let estimate = estimate(&bounces.by_simulation()?, Budget::Draws(100_000), 1)?;
     /// assert!(estimate.z(4.0).unwrap().abs() < 5.0);
     /// # Ok::<(), unbiased::Error>(())
@@ -116,17 +106,20 @@ impl BounceCount {
     ///
     /// # Errors
     /// If p_rr = 1: a draw would never end.
-    pub fn by_simulation(&self) -> Result<BouncesBySimulation> {
+    pub fn by_simulation(self) -> Result<impl Distribution<u64> + Estimator + Copy> {
         self.require_an_end()?;
         Ok(BouncesBySimulation { p_rr: self.p_rr })
     }
 
     /// N sampled in one step, ⌊ln(1 − U)/ln p⌋, at the same cost for every p.
     ///
-    /// ```
-    /// use unbiased::{Budget, estimate, roulette::BounceCount};
+    /// U = k·2⁻⁵³ is never 1, so N is at most 53 ln 2/−ln p, beyond which the probability is below 2⁻⁵³: 164
+    /// bounces for p = 4/5, and 3.3e17 for p = 1 − 2⁻⁵³.
     ///
-    /// let bounces = BounceCount::new(0.8)?;
+    /// ```
+    /// use unbiased::{Budget, estimate, roulette::Roulette};
+    ///
+    /// let bounces = Roulette::new(0.8)?.bounces();
     /// let estimate = estimate(&bounces.by_inversion()?, Budget::Draws(100_000), 1)?;
     /// assert!(estimate.z(4.0).unwrap().abs() < 5.0);
     /// # Ok::<(), unbiased::Error>(())
@@ -134,22 +127,19 @@ impl BounceCount {
     ///
     /// # Errors
     /// If p_rr = 1: N is infinite.
-    pub fn by_inversion(&self) -> Result<BouncesByInversion> {
+    pub fn by_inversion(self) -> Result<impl Distribution<u64> + Estimator + Copy> {
         self.require_an_end()?;
         Ok(BouncesByInversion { per_ln: 1.0 / self.p_rr.ln() })
     }
 
-    fn require_an_end(&self) -> Result<f64> {
+    fn require_an_end(self) -> Result<f64> {
         require(P_RR, self.p_rr, self.p_rr < 1.0, "below 1 (at 1 the bounces never end)")
     }
 }
 
-/// N by flipping coins; see [`BounceCount::by_simulation`].
-///
-/// n bounces or more have probability pⁿ, and take n coins. A draw never ends only if the generator keeps
-/// giving numbers below p.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BouncesBySimulation {
+/// N by flipping coins.
+#[derive(Clone, Copy)]
+struct BouncesBySimulation {
     p_rr: f64,
 }
 
@@ -172,13 +162,9 @@ impl Estimator for BouncesBySimulation {
     }
 }
 
-/// N = ⌊ln(1 − U)/ln p⌋; see [`BounceCount::by_inversion`].
-///
-/// # Largest sample
-/// U = k·2⁻⁵³ is never 1, so N is at most 53 ln 2/−ln p, beyond which the probability is below 2⁻⁵³: 164
-/// bounces for p = 4/5, and 3.3e17 for p = 1 − 2⁻⁵³.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BouncesByInversion {
+/// N = ⌊ln(1 − U)/ln p⌋.
+#[derive(Clone, Copy)]
+struct BouncesByInversion {
     /// 1/ln p
     per_ln: f64,
 }

@@ -10,9 +10,7 @@ use rand::Rng;
 use rand::distr::{Distribution, StandardUniform};
 
 use crate::error::{Result, require};
-use crate::estimator::Estimator;
-use crate::float::Extended;
-use crate::stream::Stream;
+use crate::estimator::{Estimator, from_fn};
 
 mod bounces;
 #[cfg(feature = "workbook")]
@@ -22,7 +20,7 @@ pub mod mistakes;
 #[cfg(feature = "workbook")]
 pub(crate) mod questions;
 
-pub use bounces::{BounceCount, BouncesByInversion, BouncesBySimulation};
+pub use bounces::BounceCount;
 pub use light::{LightModel, RoulettePaths, TruncatedPaths};
 
 /// Russian roulette with continuation probability p_rr: a coin that decides whether a path goes on.
@@ -60,7 +58,7 @@ impl Roulette {
 
     /// The distribution of the number of bounces.
     pub fn bounces(&self) -> BounceCount {
-        BounceCount::of(self.p_rr)
+        BounceCount { p_rr: self.p_rr }
     }
 
     /// Flips the coin: true, to continue, with probability p_rr, exactly so for every p_rr in `f64`.
@@ -78,9 +76,13 @@ impl Roulette {
         coin(rng, self.p_rr)
     }
 
-    /// The estimator X_rr: X/p_rr with probability p_rr, else 0 without drawing X.
+    /// The estimator X_rr: X/p_rr with probability p_rr, else 0 without drawing X. If X/p_rr overflows, the
+    /// draw is infinite, which ends a run with an error.
     ///
-    /// The coin takes a random number of its own, so it is independent of X.
+    /// The coin takes a random number of its own, so it is independent of X. For an X with mean μ and
+    /// variance σ² the variance of X_rr is E\[X²\]/p − μ² = σ²/p + μ² (1 − p)/p. The cost falls to a
+    /// fraction p of X's, but p·Var X_rr = σ² + μ² (1 − p) ≥ σ². So roulette on a single X never lowers
+    /// variance × cost.
     ///
     /// ```
     /// use unbiased::{Budget, estimate, inversion::Exponential, roulette::Roulette};
@@ -91,50 +93,13 @@ impl Roulette {
     /// assert!(estimate.z(x.mean()).unwrap().abs() < 5.0);
     /// # Ok::<(), unbiased::Error>(())
     /// ```
-    pub fn wrap<X: Estimator>(&self, x: X) -> RussianRoulette<X> {
-        RussianRoulette { roulette: *self, x }
-    }
-
-    /// The variance of X_rr for an X with mean μ and variance σ²: E\[X²\]/p − μ² = σ²/p + μ² (1 − p)/p.
-    ///
-    /// The cost falls to a fraction p of X's, but p·Var X_rr = σ² + μ² (1 − p) ≥ σ². So roulette on a single
-    /// X never lowers variance × cost.
-    ///
-    /// ```
-    /// let roulette = unbiased::roulette::Roulette::new(0.25)?;
-    /// assert_eq!(roulette.wrapped_variance(2.0, 1.0)?, 16.0); // (1 + 4)/0.25 − 4
-    /// # Ok::<(), unbiased::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// If the mean is not finite, or the variance is negative or NaN.
-    pub fn wrapped_variance(&self, mean: f64, variance: f64) -> Result<f64> {
-        require("the mean of X", mean, mean.is_finite(), "finite")?;
-        require("the variance of X", variance, variance >= 0.0, "0 or positive")?;
-        let [mean, variance, p] = [mean, variance, self.p_rr].map(Extended::from);
-        Ok(((variance + mean.squared() * (Extended::ONE - p)) / p).round())
+    pub fn wrap<X: Estimator>(self, x: X) -> impl Estimator {
+        // divided, not multiplied by 1/p_rr, which is infinite for p_rr < 5.6e-309
+        from_fn(move |rng| if self.continues(rng) { x.draw(rng) / self.p_rr } else { 0.0 })
     }
 }
 
 const P_RR: &str = "the continuation probability p_rr";
-
-/// The estimator X_rr = X/p_rr with probability p_rr, else 0; see [`Roulette::wrap`].
-///
-/// Its mean is X's, its variance [`Roulette::wrapped_variance`]. If X/p_rr overflows, the draw is infinite,
-/// which ends a run with an error.
-#[derive(Debug, Clone, Copy)]
-pub struct RussianRoulette<X> {
-    roulette: Roulette,
-    x: X,
-}
-
-impl<X: Estimator> Estimator for RussianRoulette<X> {
-    #[inline]
-    fn draw(&self, rng: &mut Stream) -> f64 {
-        // divided, not multiplied by 1/p_rr, which is infinite for p_rr < 5.6e-309
-        if self.roulette.continues(rng) { self.x.draw(rng) / self.roulette.p_rr } else { 0.0 }
-    }
-}
 
 /// True with probability p, exactly, for any p in \[0, 1\].
 ///

@@ -5,9 +5,12 @@
 mod alarms;
 
 pub use alarms::{BUDGETS, alarm, deviations};
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec3;
 use proptest::prelude::*;
-use std::f64::consts::PI;
 use unbiased::lambertian::hemisphere::{Direction, Hemisphere};
+use unbiased::paths::room::{Face, Scene, Vertex};
 
 /// Fixed by default; `UNBIASED_SEED=n` gives the whole suite fresh ones.
 pub fn seed(n: u64) -> u64 {
@@ -42,6 +45,18 @@ pub const NEARLY_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
 /// Any bits.
 pub fn any_bits() -> impl Strategy<Value = f64> {
     any::<u64>().prop_map(f64::from_bits)
+}
+
+/// Any bits, numbers of every size, and the edges themselves with their neighbours.
+pub fn any_number() -> impl Strategy<Value = f64> {
+    let edges = [0.0, -0.0, 0.25, 0.5, 1.0, 2.0, f64::MIN_POSITIVE, f64::MAX, f64::INFINITY, f64::NAN];
+    let neighbours = edges.into_iter().flat_map(|x: f64| [x, x.next_up(), x.next_down(), -x]);
+    prop_oneof![
+        any_bits(),
+        (-320.0..308.0f64).prop_map(|power| 10f64.powf(power)),
+        -3.0..3.0f64,
+        proptest::sample::select(neighbours.collect::<Vec<f64>>()),
+    ]
 }
 
 /// Any bits in [0, 1]: all sizes alike, anywhere, near 1, near ½, and the ends.
@@ -122,9 +137,29 @@ pub fn howell_parallel(a: f64, b: f64, c: f64) -> f64 {
 
 /// B-4: an element on a plane at right angles to the rectangle's, which starts above the element: a away from
 /// the element's plane, b along it, c high; odd in b.
-pub fn howell_perpendicular(a: f64, b: f64, c: f64) -> f64 {
+fn howell_perpendicular(a: f64, b: f64, c: f64) -> f64 {
     let s = a.hypot(c);
     ((b / c).atan() - c / s * (b / s).atan()) / (2.0 * PI)
+}
+
+/// The part of a vertex's hemisphere that a light of this half-width fills, if nothing hides it.
+pub fn part_of_the_sky(vertex: &Vertex, h: f64) -> f64 {
+    let ([x, y, z], n) = (vertex.position().to_array(), vertex.normal());
+    let c = 4.0 - z;
+    if n.z > 0.5 {
+        return howell_parallel(h - x, h - y, c)
+            + howell_parallel(h + x, h - y, c)
+            + howell_parallel(h - x, h + y, c)
+            + howell_parallel(h + x, h + y, c);
+    }
+    if n.z < -0.5 {
+        return 0.0;
+    }
+    // along the normal, and across it
+    let (own, across) = if n.x == 0.0 { (y * n.y, x) } else { (x * n.x, y) };
+    let [near, far] = [-h - own, h - own].map(|distance| distance.max(0.0));
+    let strip = |a: f64| howell_perpendicular(a, h - across, c) + howell_perpendicular(a, h + across, c);
+    strip(far) - strip(near)
 }
 
 /// The variance of xy over an Owen-scrambled (0, m, 2)-net of n = 2ᵐ points on the unit square about the
@@ -147,14 +182,65 @@ pub fn is_share(what: &str, share: f64, n: u64, [low, high]: [f64; 2], alpha: f6
 }
 
 /// A room without a light in which every face emits 1 and reflects so much.
-pub fn furnace(albedo: f64) -> unbiased::paths::room::Scene {
-    unbiased::paths::room::Scene {
+pub fn furnace(albedo: f64) -> Scene {
+    Scene {
         wall_albedo: albedo,
         cube_albedo: albedo,
         light_half_width: 0.0,
         emission: 1.0,
         ..Default::default()
     }
+}
+
+/// The corners of a face, as the worksheet's picture has them: the room's faces look inwards, the cube's
+/// outwards.
+pub fn bounds(face: Face) -> [DVec3; 2] {
+    let [low, high] = if is_cube(face) {
+        [[-0.5, -0.5, 0.0], [0.5, 0.5, 1.0]]
+    } else {
+        [[-2.0, -2.0, 0.0], [2.0, 2.0, 4.0]]
+    };
+    let (mut ends, n) = ([low, high].map(DVec3::from_array), face.normal());
+    for axis in (0..3).filter(|axis| n[*axis] != 0.0) {
+        let upper = is_cube(face) == (n[axis] > 0.0);
+        let at = ends[usize::from(upper)][axis];
+        ends = ends.map(|mut end| {
+            end[axis] = at;
+            end
+        });
+    }
+    ends
+}
+
+/// Whether a face is one of the cube's five.
+pub fn is_cube(face: Face) -> bool {
+    Face::ALL[..5].contains(&face)
+}
+
+/// A point at these fractions of a face's sides, if it is one of the face's own: no edge's and none under the
+/// cube.
+pub fn on_face(face: Face, u: DVec3) -> Option<Vertex> {
+    let [low, high] = bounds(face);
+    // low + 0·u is low exactly
+    Vertex::at((low + (high - low) * u).to_array()).ok().filter(|vertex| vertex.face() == face)
+}
+
+/// A point on one of the faces, all faces alike.
+pub fn any_point(rng: &mut unbiased::Stream) -> Vertex {
+    let face = Face::ALL[(rng.uniform() * 11.0) as usize];
+    loop {
+        let u = DVec3::from_array([(); 3].map(|()| rng.uniform()));
+        if let Some(vertex) = on_face(face, u) {
+            return vertex;
+        }
+    }
+}
+
+/// Anywhere on the sphere.
+pub fn any_direction(rng: &mut unbiased::Stream) -> DVec3 {
+    let (z, phi) = (2.0 * rng.uniform() - 1.0, 2.0 * PI * rng.uniform());
+    let sin = (1.0 - z * z).sqrt();
+    DVec3::new(sin * phi.cos(), sin * phi.sin(), z)
 }
 
 /// The next number of each of the next draws.
@@ -190,6 +276,8 @@ pub fn directions(
     alpha: f64,
     seed: u64,
 ) -> unbiased::Result<unbiased::check::Agreement> {
-    let unwarp = |w: &Direction| [claimed.cdf_of_cos_theta(w.cos_theta()), w.phi() / std::f64::consts::TAU];
+    // P(cos θ ≤ c) is c or c²
+    let power = if claimed == Hemisphere::Uniform { 1 } else { 2 };
+    let unwarp = |w: &Direction| [w.cos_theta().max(0.0).powi(power), w.phi() / TAU];
     unbiased::check::points(sampler, unwarp, deviation, alpha, seed)
 }

@@ -35,13 +35,13 @@ pub enum Face {
 
 impl Face {
     /// Half the room's width in metres.
-    pub const ROOM_HALF_WIDTH: f64 = 2.0;
+    pub(crate) const ROOM_HALF_WIDTH: f64 = 2.0;
     /// The room's height in metres.
-    pub const ROOM_HEIGHT: f64 = 4.0;
+    pub(crate) const ROOM_HEIGHT: f64 = 4.0;
     /// Half the cube's width in metres.
-    pub const CUBE_HALF_WIDTH: f64 = 0.5;
+    pub(crate) const CUBE_HALF_WIDTH: f64 = 0.5;
     /// The cube's height in metres.
-    pub const CUBE_HEIGHT: f64 = 1.0;
+    pub(crate) const CUBE_HEIGHT: f64 = 1.0;
 
     /// All faces; on an edge, [`Vertex::at`] takes the first one that fits.
     pub const ALL: [Self; 11] = [
@@ -59,16 +59,8 @@ impl Face {
     ];
 
     /// Whether it belongs to the cube.
-    ///
-    /// ```
-    /// use unbiased::paths::room::Face;
-    ///
-    /// let (cube, room): (Vec<Face>, Vec<Face>) = Face::ALL.into_iter().partition(|face| face.is_cube());
-    /// assert_eq!((cube.len(), room.len()), (5, 6));
-    /// assert_eq!(cube.iter().map(|face| face.area()).sum::<f64>(), 5.0);
-    /// ```
     #[inline]
-    pub fn is_cube(self) -> bool {
+    pub(crate) fn is_cube(self) -> bool {
         self as u8 <= Self::CubeNorth as u8
     }
 
@@ -79,8 +71,6 @@ impl Face {
     /// use unbiased::paths::room::Face;
     ///
     /// assert_eq!((Face::CubeTop.normal(), Face::Ceiling.normal()), (DVec3::Z, DVec3::NEG_Z));
-    /// let [low, high] = Face::CubeTop.bounds();
-    /// assert_eq!([low, high], [DVec3::new(-0.5, -0.5, 1.0), DVec3::new(0.5, 0.5, 1.0)]);
     /// ```
     #[inline]
     pub fn normal(self) -> DVec3 {
@@ -94,15 +84,20 @@ impl Face {
         &FRAMES[self as usize % FRAMES.len()]
     }
 
-    /// The smallest and the largest coordinates of the face, in metres; [`normal`](Self::normal) has an
-    /// example. The floor's are those of the whole square, with the part under the cube.
+    /// The smallest and the largest coordinates of the face, in metres. The floor's are those of the whole
+    /// square, with the part under the cube.
     #[inline]
-    pub fn bounds(self) -> [DVec3; 2] {
+    pub(crate) fn bounds(self) -> [DVec3; 2] {
         BOUNDS[self as usize % BOUNDS.len()]
     }
 
-    /// The area in m², as in the example of [`is_cube`](Self::is_cube): the floor's without the part under
-    /// the cube, the ceiling's with the light.
+    /// The area in m²: the floor's without the part under the cube, the ceiling's with the light.
+    ///
+    /// ```
+    /// use unbiased::paths::room::Face;
+    ///
+    /// assert_eq!(Face::ALL.map(Face::area).iter().sum::<f64>(), 5.0 + 15.0 + 5.0 * 16.0);
+    /// ```
     pub fn area(self) -> f64 {
         match self {
             Self::Floor => 15.0,
