@@ -203,7 +203,7 @@ impl Show for Comparison {
         let relative = self.truth != 0.0;
         let rows = self.remarked().into_iter().map(|(rival, place, remark)| {
             let to = |error| rival.seconds_to(error).to_string();
-            let after = rival.rmse(1.0) / self.scale();
+            let after = rival.rmse(1.0) / rival.scale();
             let after = match after {
                 error if error.is_infinite() => "∞".into(),
                 error if relative => format!("{} %", two_digits(100.0 * error)),

@@ -137,6 +137,15 @@ pub(crate) fn duration(seconds: f64) -> String {
     format!("{} {unit}", two_digits(factor * seconds))
 }
 
+/// A CSV field (RFC 4180).
+pub(crate) fn csv_field(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.into()
+    }
+}
+
 /// All digits of a number, in the shorter of the plain and the scientific form: both parse back to the same
 /// number.
 pub(crate) fn parseable(number: f64) -> String {
@@ -183,5 +192,11 @@ mod tests {
         assert_eq!([equals(0.25, 3), equals(1.386_29, 3)], ["= 0.25", "≈ 1.39"]);
         assert_eq!([in_steps(-0.5, 0.5), in_steps(20.0, 20.0)], ["−0.5", "20"]);
         assert_eq!([power_of_ten(-18), power_of_ten(0)], ["10⁻¹⁸", "1"]);
+    }
+
+    #[test]
+    fn csv_fields_with_commas_are_csv_field() {
+        assert_eq!(csv_field("a"), "a");
+        assert_eq!(csv_field("a, \"b\""), "\"a, \"\"b\"\"\"");
     }
 }

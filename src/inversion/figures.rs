@@ -5,7 +5,7 @@ use rand::distr::Distribution;
 use crate::error::{Error, Result};
 use crate::inversion::Exponential;
 use crate::numbers::{equals, typeset};
-use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side, Width};
+use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side};
 use crate::stream::Stream;
 
 /// The rate, if the density and the lengths can be drawn.
@@ -40,7 +40,8 @@ pub fn exponential(exponential: &Exponential, u: f64, edition: Edition) -> Resul
     pdf.curve("p", Ink::Green, |x| exponential.pdf(x));
 
     if edition == Edition::Solution {
-        let answer = Sample { u, x, at: rate * x, p: exponential.pdf(x), label: sample_label(rate, u, x) };
+        let (place, p) = (rate * x / 5.0, exponential.pdf(x));
+        let answer = Sample { u, x, place, p, label: sample_label(rate, u, x) };
         answer.on_cdf(&mut cdf);
         answer.on_inverse(&mut inverse);
         answer.on_pdf(&mut pdf);
@@ -66,18 +67,9 @@ pub fn exponential(exponential: &Exponential, u: f64, edition: Edition) -> Resul
             ),
         ),
     };
-    Plot {
-        name: "1_2_exponential",
-        title,
-        description,
-        edition,
-        width: Width::Page,
-        height_mm: 132.0,
-        columns: 2,
-        // the density stands below the cdf, with the same x axis
-        panels: vec![cdf, inverse, pdf],
-    }
-    .draw()
+    // the density stands below the cdf, with the same x axis
+    let panels = vec![cdf, inverse, pdf];
+    Plot { edition, columns: 2, ..Plot::of("1_2_exponential", 132.0, panels) }.draw(title, description)
 }
 
 /// The sample as text, such as “x = ln 4 ≈ 1.39”: with ln n if 1/(1 − u) is a whole number n, and with λ if λ
@@ -92,17 +84,14 @@ fn sample_label(rate: f64, u: f64, x: f64) -> String {
     if rate == 1.0 { format!("x = ln {whole} {number}") } else { format!("x = (ln {whole})/λ {number}") }
 }
 
-/// The sample for u, as it is marked; `at` is λx.
+/// The sample for u, as it is marked; `place` is that of x on its axis.
 struct Sample {
     u: f64,
     x: f64,
-    at: f64,
+    place: f64,
     p: f64,
     label: String,
 }
-
-/// The length of the x axes, in units of 1/λ.
-const LENGTHS: f64 = 5.0;
 
 impl Sample {
     fn given(&self) -> String {
@@ -111,8 +100,7 @@ impl Sample {
 
     /// From u across to the curve, and down.
     fn on_cdf(&self, panel: &mut Panel) {
-        let Self { u, x, at, ref label, .. } = *self;
-        let place = at / LENGTHS;
+        let Self { u, x, place, ref label, .. } = *self;
         let foot = panel.spot(place, 0.07);
         if place > 1.0 {
             let [edge, _] = panel.spot(1.0, u);
@@ -140,8 +128,7 @@ impl Sample {
 
     /// From u up to the curve, and across.
     fn on_inverse(&self, panel: &mut Panel) {
-        let Self { u, x, at, ref label, .. } = *self;
-        let place = at / LENGTHS;
+        let Self { u, x, place, ref label, .. } = *self;
         if place > 1.0 {
             let [_, top] = panel.spot(u, 1.0);
             panel.arrow(Ink::Black, [u, 0.0], [u, top]);
@@ -163,8 +150,7 @@ impl Sample {
 
     /// The density at the sample.
     fn on_pdf(&self, panel: &mut Panel) {
-        let Self { x, at, p, ref label, .. } = *self;
-        let place = at / LENGTHS;
+        let Self { x, place, p, ref label, .. } = *self;
         if place > 1.0 {
             panel.note(Ink::Black, [1.0, 0.5], Side::Left, &format!("{label}, beyond the axis →"));
             return;
@@ -248,15 +234,16 @@ pub fn empirical_cdf(exponential: &Exponential, draws: usize, seed: u64) -> Resu
         .note(Ink::Blue, [0.4, 0.34], Side::Right, &told);
     let title =
         format!("Exponential samples by inversion: ten step by step, and {draws} against the exact F");
-    Plot::of("1_1_empirical_cdf", 66.0, vec![carried, panel])
-        .titled(title, format!(
+    Plot::of("1_1_empirical_cdf", 66.0, vec![carried, panel]).draw(
+        title,
+        format!(
             "Two panels against x, λ = {lambda}. Left: ten evenly spaced U are carried across to the curve \
              of F and down to their samples, which lie closest where F is steepest, near 0. Right: the share \
              of {draws} samples at most x, as steps, with a band of ±{} that holds the whole of F with 95 % \
              confidence; F(x) = 1 − e^(−λx) runs inside the band (seed {seed}).",
             typeset(reach, 2)
-        ))
-        .draw()
+        ),
+    )
 }
 
 /// Figure for 1.1: P(X > x) on a logarithmic scale, up to the largest samples that uniform numbers in f32 and
@@ -270,10 +257,8 @@ pub fn tails(exponential: &Exponential, draws: usize, seed: u64) -> Result<Figur
     let mut samples: Vec<f64> =
         (0..draws).map(|_| rate * Distribution::<f64>::sample(exponential, &mut rng)).collect();
     samples.sort_by(|a, b| b.total_cmp(a));
-    let measured = (0..)
-        .map(|i| 1usize << i)
-        .take_while(|&rank| rank <= draws)
-        .filter_map(|rank| samples.get(rank - 1).map(|&x| [x, rank as f64 / draws as f64]));
+    let ranks = (0..usize::BITS).map(|i| 1usize << i);
+    let measured = ranks.filter_map(|rank| samples.get(rank - 1).map(|&x| [x, rank as f64 / draws as f64]));
     // the smallest 1 − u above 0 is one grid step
     let last = |bits: i32| f64::from(bits) * std::f64::consts::LN_2;
     let (end32, end64) = (last(24), last(53));
@@ -295,11 +280,12 @@ pub fn tails(exponential: &Exponential, draws: usize, seed: u64) -> Result<Figur
         .text(Ink::Blue, [end64, 4e-5], Side::Left, "53 ln 2 = 36.737")
         .text(Ink::Green, [1.0, 1e-9], Side::Right, &format!("rings: {draws}"))
         .text(Ink::Green, [1.0, 4e-11], Side::Right, "samples");
-    Plot::of("1_1_tails", 62.0, vec![panel])
-        .titled("The tail of inversion ends where the grid of uniform numbers ends", format!(
+    Plot::of("1_1_tails", 62.0, vec![panel]).draw(
+        "The tail of inversion ends where the grid of uniform numbers ends",
+        format!(
             "P(X > x) against λx on a logarithmic scale: the straight line e^(−λx), {draws} f64 samples on \
              it (seed {seed}), and the last samples possible: λx = 16.636 with f32 uniform numbers, 36.737 \
              with f64."
-        ))
-        .draw()
+        ),
+    )
 }

@@ -37,14 +37,11 @@ pub fn integrand() -> Result<Figure> {
         .text(Ink::Vermilion, [0.03, 0.67], Side::Right, "(sin θ forgotten)")
         .text(Ink::Green, [1.54, 0.76], Side::Left, "sin θ: area 1")
         .text(Ink::Green, [1.54, 0.67], Side::Left, "(cos θ forgotten)");
-    Plot::of("3_2_integrand", 62.0, vec![panel])
-        .titled(
-            "cos θ sin θ has area ½; with a factor forgotten the area is 1",
-            "Three curves over θ from 0 to π/2: cos θ sin θ, filled, with area ½; cos θ, which is left when \
-             sin θ of the solid angle is forgotten, and sin θ, which is left when cos θ is, each with area \
-             1.",
-        )
-        .draw()
+    Plot::of("3_2_integrand", 62.0, vec![panel]).draw(
+        "cos θ sin θ has area ½; with a factor forgotten the area is 1",
+        "Three curves over θ from 0 to π/2: cos θ sin θ, filled, has area ½; cos θ alone, where the sin θ of \
+         the solid angle is forgotten, and sin θ alone, where cos θ is forgotten, have area 1 each.",
+    )
 }
 
 /// Figures for 3.4 and 3.5: sampled directions from above and from the side.
@@ -83,8 +80,9 @@ pub fn directions(hemisphere: Hemisphere, count: usize, seed: u64) -> Result<Fig
     side.arrow(Ink::Black, [0.0, 1.0], [0.0, 1.4]);
     side.text(Ink::Black, [0.03, 1.3], Side::Right, "normal");
     side.text(Ink::Black, [0.0, -0.25], Side::Centre, &format!("{rule}, φ = 2πV"));
-    Plot::of(name, 62.2, vec![top, side])
-        .titled(format!("{count} {word} directions, from above and from the side"), format!(
+    Plot::of(name, 62.2, vec![top, side]).draw(
+        format!("{count} {word} directions, from above and from the side"),
+        format!(
             "{count} points on the unit hemisphere drawn with {rule} and φ = 2πV (seed {seed}), seen from \
              above, inside the circle of the horizon, and from the side, above the surface. {}",
             match hemisphere {
@@ -92,8 +90,8 @@ pub fn directions(hemisphere: Hemisphere, count: usize, seed: u64) -> Result<Fig
                     "From the side they fill all heights alike; from above they crowd towards the rim.",
                 Cosine => "From above they fill the disc evenly; few are near the horizon.",
             }
-        ))
-        .draw()
+        ),
+    )
 }
 
 /// f/p against θ for a white surface under constant incoming radiance 1.
@@ -164,18 +162,16 @@ pub fn variance_against_exponent(draws: u64, seed: u64) -> Result<Figure> {
         .text(Ink::Blue, [2.3, 0.4], Side::Centre, "uniform")
         .text(Ink::Vermilion, [2.5, 0.045], Side::Centre, "cosine")
         .text(Ink::Vermilion, [-0.6, 0.56], Side::Right, "cosine: ∞ as a → −1");
-    Plot::of("3_6_variance", 66.0, vec![reason(), panel])
-        .titled(
-            "Cosine-weighted directions win for a > −½, uniform ones below",
-            format!(
-                "Left: f/p against θ under a uniform light; 2 cos θ for uniform directions, 1 everywhere for \
+    Plot::of("3_6_variance", 66.0, vec![reason(), panel]).draw(
+        "Cosine-weighted directions win for a > −½, uniform ones below",
+        format!(
+            "Left: f/p against θ under a uniform light; 2 cos θ for uniform directions, 1 everywhere for \
                  cosine-weighted ones, whose p is proportional to f. Right: variance of one draw against the \
                  exponent a of the light cos^a θ. Uniform: 0 at a = −1, 1/3 at a = 0. Cosine: infinite as a \
                  → −1, 0 at a = 0. Both are 2/9 at a = −½. Points: variances of {draws} draws, seed \
                  {seed}."
-            ),
-        )
-        .draw()
+        ),
+    )
 }
 
 /// Figure for 3.6: the variance of cosine directions over that of uniform ones, against the width of a ring
@@ -213,13 +209,14 @@ pub fn variance_against_ring(draws: u64, seed: u64) -> Result<Figure> {
         .text(Ink::Black, [0.79, 2.6], Side::Centre, "equal at ε = ¾")
         .text(Ink::Grey, [0.02, 0.66], Side::Right, "above: uniform is better")
         .text(Ink::Grey, [0.02, 0.37], Side::Right, "below: cosine is better");
-    Plot::of("3_6_ring", 66.0, vec![panel])
-        .titled("Light from near the horizon: cosine-weighted directions lose for ε < ¾", format!(
-            "The ratio of cosine's variance to the uniform one against the width ε of the ring of light cos \
-             θ < ε, falling from 8.03 at ε = 0.1 to 1 at ε = ¾ and below. Points: variances of {draws} \
-             draws, seed {seed}."
-        ))
-        .draw()
+    Plot::of("3_6_ring", 66.0, vec![panel]).draw(
+        "Light from near the horizon: cosine-weighted directions lose for ε < ¾",
+        format!(
+            "The variance of cosine-weighted directions divided by that of uniform ones, against the width ε \
+             of the ring of light cos θ < ε: 8.03 at ε = 0.1, 1 at ε = ¾, and less for wider rings. Points: \
+             variances of {draws} draws, seed {seed}."
+        ),
+    )
 }
 
 /// Relative differences below this count as none: half of the smaller bias shown.
@@ -290,18 +287,19 @@ pub fn betting(seed: u64) -> Result<Figure> {
         .text(Ink::Blue, [220.0, 4.2], Side::Right, "solid: against 0.5 % less")
         .text(Ink::Purple, [220.0, 2.9], Side::Right, "dotted: against 0.5 % more");
 
-    Plot::of("check_wealth", 76.0, vec![against, certificate])
-        .titled(format!(
+    Plot::of("check_wealth", 76.0, vec![against, certificate]).draw(
+        format!(
             "Betting against a mean: the classic mistake is refuted after {classic_draws} draws, a bias of 1 \
              % after {off_draws}, and the right estimator certified within 0.5 % after {right_draws}"
-        ), format!(
+        ),
+        format!(
             "Two panels, wealth against draws, both logarithmic, seed {seed}. Left, bets against the mean \
              2/3: those on uniform directions with the cosine weight reach 10¹² after {classic_draws} draws, \
              those on an estimator 1 % too large after {off_draws}, those on a right one never. Right, for \
              the right estimator: bets against means 0.5 % less and 0.5 % more both pass 10⁶ by \
              {right_draws} draws."
-        ))
-        .draw()
+        ),
+    )
 }
 
 /// Keeps looks whose numbers of draws are at least 2 % apart, and the last one.

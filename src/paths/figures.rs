@@ -18,15 +18,6 @@ use crate::stream::Stream;
 /// Figure for 4.3: running means of three estimators of the two-bounce radiance, with the exact value if
 /// known.
 ///
-/// ```
-/// use unbiased::paths::room::{BoxRoom, Scene};
-/// use unbiased::paths::figures;
-///
-/// let figure = figures::two_bounces_converging(&BoxRoom::new(Scene::default())?, 1)?;
-/// assert_eq!(figure.name(), "4_3_convergence");
-/// # Ok::<(), unbiased::Error>(())
-/// ```
-///
 /// # Errors
 /// If it cannot be drawn.
 pub fn two_bounces_converging(room: &BoxRoom, seed: u64) -> Result<Figure> {
@@ -70,14 +61,15 @@ pub fn two_bounces_converging(room: &BoxRoom, seed: u64) -> Result<Figure> {
         .text(Ink::Green, [9e4, 1.85 * height], Side::Left, "dash-dot: light by chance")
         .text(Ink::Vermilion, [9e4, 1.69 * height], Side::Left, "dashed: light sampled")
         .text(Ink::Blue, [9e4, 1.53 * height], Side::Left, "solid: Lₒ(pⱼ) known");
-    Plot::of("4_3_convergence", 66.0, vec![panel])
-        .titled("Three estimators of the light after two bounces, and the value they converge to", format!(
+    Plot::of("4_3_convergence", 66.0, vec![panel]).draw(
+        "Three estimators of the light after two bounces, and the value they converge to",
+        format!(
             "Running means against the number of paths n from 10 to {LAST}, logarithmic (seed {seed}). With \
              the exact Lₒ(pⱼ) and cosine directions the mean settles first; with the light sampled at pⱼ and \
-             uniform directions, in its 95 % band, next; where the light is found by chance most paths find \
-             nothing, and the mean jumps."
-        ))
-        .draw()
+             uniform directions it settles next, within its 95 % band; where the light is found by chance, \
+             most paths find nothing and the mean jumps."
+        ),
+    )
 }
 
 /// The means of the first n draws, for 25 n per decade from 10 on.
@@ -96,12 +88,6 @@ fn running_means(estimator: &dyn Estimator, last: u64, seed: u64) -> Vec<[f64; 2
 
 /// Figure for 4.3: how an estimate changes if occluded directions are left out of n. Radiance 1 comes from
 /// cos θ > 0.8, and a black occluder covers the directions with cos θ < c.
-///
-/// ```
-/// let figure = unbiased::paths::figures::occluded_fraction(10_000, 1)?;
-/// assert_eq!(figure.title(), "An occluded direction counts: it adds 0 to the sum and 1 to n");
-/// # Ok::<(), unbiased::Error>(())
-/// ```
 ///
 /// # Errors
 /// If it cannot be drawn.
@@ -137,14 +123,15 @@ pub fn occluded_fraction(draws: u64, seed: u64) -> Result<Figure> {
         .text(Ink::Blue, [0.02, 0.22], Side::Right, "divided by all n: right")
         .text(Ink::Vermilion, [0.02, 1.2], Side::Right, "divided by the visible")
         .text(Ink::Vermilion, [0.02, 1.04], Side::Right, "ones alone: too bright");
-    Plot::of("4_3_occlusion", 62.0, vec![panel])
-        .titled("An occluded direction counts: it adds 0 to the sum and 1 to n", format!(
+    Plot::of("4_3_occlusion", 62.0, vec![panel]).draw(
+        "An occluded direction counts: it adds 0 to the sum and 1 to n",
+        format!(
             "L̂/ρ with uniform directions against the fraction c that is occluded, from 0 to 0.8; the light \
              itself stays. The sum divided by all n is flat at {truth:.2}; divided by the number of visible \
              directions it rises as {truth:.2}/(1 − c), to five times that. Points: {draws} directions each \
              (seed {seed})."
-        ))
-        .draw()
+        ),
+    )
 }
 
 /// A way to find the light with finite variance: by chance if the light touches the walls, where the weights
@@ -155,16 +142,6 @@ fn find_light(room: &BoxRoom) -> Result<FindLight> {
 }
 
 /// Figure for 4.3: radiance by the number of bounces, exact where known, else from ten million paths each.
-///
-/// ```no_run
-/// use unbiased::paths::room::{BoxRoom, Scene};
-/// use unbiased::paths::figures;
-///
-/// // takes some seconds
-/// let figure = figures::radiance_by_bounces(&BoxRoom::new(Scene::default())?, 1)?;
-/// assert_eq!(figure.title(), "Each bounce adds less");
-/// # Ok::<(), unbiased::Error>(())
-/// ```
 ///
 /// # Errors
 /// If it cannot be drawn.
@@ -202,33 +179,32 @@ pub fn radiance_by_bounces(room: &BoxRoom, seed: u64) -> Result<Figure> {
         Axis::linear("bounces k", 0.4, 8.6).with_ticks((1..=MOST).map(|k| (f64::from(k), k.to_string()))),
         Axis::log("Lₖ (mW m⁻² sr⁻¹)", low, high),
     );
-    let above_0 =
-        |points: &[[f64; 4]]| points.iter().filter(|[_, y, ..]| *y > 0.0).copied().collect::<Vec<_>>();
-    panel.bars("exact", Ink::Blue, 0.7, exact.iter().copied().filter(|[_, y]| *y > 0.0));
-    panel.bars("estimated", Ink::Vermilion, 0.7, above_0(&found).iter().map(|[k, y, ..]| [*k, *y]));
-    panel.error_bars("estimated", Ink::Black, Marker::Dot, above_0(&found));
+    let above_0 = || found.iter().copied().filter(|[_, y, ..]| *y > 0.0);
+    panel
+        .bars("exact", Ink::Blue, 0.7, exact.iter().copied().filter(|[_, y]| *y > 0.0))
+        .bars("estimated", Ink::Vermilion, 0.7, above_0().map(|[k, y, ..]| [k, y]))
+        .error_bars("estimated", Ink::Black, Marker::Dot, above_0());
     for &[k, y, ..] in &all {
         // the label of a bar of no height stands at the foot of the axis
-        let text = typeset(y, 3);
-        panel.text(Ink::Black, [k, y.max(low)], Side::Above, &text);
+        panel.text(Ink::Black, [k, y.max(low)], Side::Above, &typeset(y, 3));
     }
-    let list = |ks: Vec<String>| ks.join(", ");
-    let known = list(exact.iter().map(|[k, _]| k.to_string()).collect());
-    let top = high / (high / low).powf(0.07);
-    panel.text(Ink::Blue, [8.4, top], Side::Left, &format!("k = {known}: exact"));
-    panel.text(Ink::Vermilion, [8.4, top / (high / low).powf(0.09)], Side::Left, "others: estimated");
+    let known = exact.iter().map(|[k, _]| k.to_string()).collect::<Vec<_>>().join(", ");
+    let [first, second] = [0.93, 0.84].map(|up| [8.4, panel.y.value(up)]);
+    panel.text(Ink::Blue, first, Side::Left, &format!("k = {known}: exact")).text(
+        Ink::Vermilion,
+        second,
+        Side::Left,
+        "others: estimated",
+    );
     let less = all.iter().zip(all.iter().skip(1)).all(|([.., low, _], [.., next])| next < low);
-    Plot::of("4_3_bounces", 66.0, vec![panel])
-        .titled(if less {
-            "Each bounce adds less"
-        } else {
-            "The light after one bounce, after two, and so on"
-        }, format!(
+    Plot::of("4_3_bounces", 66.0, vec![panel]).draw(
+        if less { "Each bounce adds less" } else { "The light after one bounce, after two, and so on" },
+        format!(
             "Bars, on a logarithmic scale: the light that leaves p after k = 1 to 8 bounces. For k = {known} \
              it is exact; the others are means of {PATHS} paths each with 95 % intervals, most too short to \
              be seen (seed {seed})."
-        ))
-        .draw()
+        ),
+    )
 }
 
 /// One estimator: the cost of a path, and the error of means of n paths.
@@ -255,17 +231,15 @@ impl Series {
         const PATHS: u64 = 100_000;
         const REPLICATES: u64 = 100;
         let run = Run::new(seed).threads(1).estimate(paths, Budget::Draws(PATHS))?;
-        let mut measured = Vec::new();
-        for n in [16u64, 128, 1024] {
-            let mut square = 0.0;
-            for replicate in 0..REPLICATES {
-                // one stream per replicate
+        let measured = [16u64, 128, 1024].map(|n| {
+            // one stream per replicate
+            let means = (0..REPLICATES).map(|replicate| {
                 let mut rng = Stream::new(seed, (n << 32) + replicate);
-                let mean = (0..n).map(|_| paths.draw(&mut rng)).sum::<f64>() / n as f64;
-                square += (mean - truth).powi(2) / REPLICATES as f64;
-            }
-            measured.push([n as f64, square.sqrt() / truth]);
-        }
+                (0..n).map(|_| paths.draw(&mut rng)).sum::<f64>() / n as f64
+            });
+            let square: f64 = means.map(|mean| (mean - truth).powi(2) / REPLICATES as f64).sum();
+            [n as f64, square.sqrt() / truth]
+        });
         Ok(Self {
             label,
             ink,
@@ -274,21 +248,8 @@ impl Series {
             bias: 0.0,
             rays: run.cost.evaluations as f64 / PATHS as f64,
             seconds: run.elapsed.as_secs_f64() / PATHS as f64,
-            measured,
+            measured: measured.into(),
         })
-    }
-
-    /// With this bias, if it is significant.
-    fn biased(mut self, [mean, error]: [f64; 2], [truth, truth_error]: [f64; 2]) -> Self {
-        if (mean - truth).abs() > 4.0 * error.hypot(truth_error) {
-            self.bias = (mean - truth) / truth;
-        }
-        self
-    }
-
-    /// Whether none of the paths found the light: only the measured points are drawn then.
-    fn found_none(&self) -> bool {
-        self.spread == 0.0
     }
 
     fn rmse(&self, paths: f64) -> f64 {
@@ -314,17 +275,6 @@ fn reference(paths: &Paths, seed: u64) -> Result<[f64; 2]> {
 ///
 /// Ways whose variance may be infinite, [`Estimator::doubt`], are left out. So are all estimates of all
 /// bounces if an albedo is too large for absorption to end a path.
-///
-/// ```no_run
-/// use unbiased::paths::room::{BoxRoom, Scene};
-/// use unbiased::paths::figures;
-///
-/// // takes some seconds
-/// let figures = figures::path_errors(&BoxRoom::new(Scene::default())?, 1)?;
-/// assert_eq!(figures[0].name(), "4_3_error");
-/// assert_eq!(figures[1].name(), "4_3_error_seconds");
-/// # Ok::<(), unbiased::Error>(())
-/// ```
 ///
 /// # Errors
 /// If they cannot be drawn.
@@ -353,7 +303,7 @@ pub fn path_errors(room: &BoxRoom, seed: u64) -> Result<Vec<Figure>> {
     let mut endings = Vec::new();
     // fails if an albedo is too large for absorption to end paths; there is no other reference then
     if let Ok(by_throughput) = paths(Bounces::AllByThroughput) {
-        let all = reference(&by_throughput, seed)?;
+        let [all, all_error] = reference(&by_throughput, seed)?;
         for (label, ink, marker, bounces) in [
             ("k ≤ 2", Ink::Purple, Marker::Cross, Bounces::UpTo(2)),
             ("k ≤ 4", Ink::Green, Marker::Triangle, Bounces::UpTo(4)),
@@ -361,34 +311,34 @@ pub fn path_errors(room: &BoxRoom, seed: u64) -> Result<Vec<Figure>> {
             ("roulette by throughput", Ink::Blue, Marker::Disc, Bounces::AllByThroughput),
         ] {
             let paths = paths(bounces)?;
-            if paths.doubt().is_none() {
-                let series = Series::measure((label, ink, marker), &paths, all[0], seed)?;
-                let truncated = matches!(bounces, Bounces::UpTo(_));
-                endings.push(if truncated { series.biased(reference(&paths, seed)?, all) } else { series });
+            if paths.doubt().is_some() {
+                continue;
             }
+            let mut series = Series::measure((label, ink, marker), &paths, all, seed)?;
+            if let Bounces::UpTo(_) = bounces {
+                let [mean, error] = reference(&paths, seed)?;
+                if (mean - all).abs() > 4.0 * error.hypot(all_error) {
+                    series.bias = (mean - all) / all;
+                }
+            }
+            endings.push(series);
         }
     }
-    let by_rays =
-        error_figure("4_3_error", "rays", [10.0, 1e6], |series| series.rays, &ways, &endings, seed)?;
-    let by_seconds = error_figure(
-        "4_3_error_seconds",
-        "seconds on one core",
-        [1e-6, 0.06],
-        |series| series.seconds,
-        &ways,
-        &endings,
-        seed,
-    )?;
-    Ok(vec![by_rays, by_seconds])
+    let drawn = |name, unit, range, cost: fn(&Series) -> f64| {
+        error_figure(name, unit, range, cost, [&ways, &endings], seed)
+    };
+    Ok(vec![
+        drawn("4_3_error", "rays", [10.0, 1e6], |series| series.rays)?,
+        drawn("4_3_error_seconds", "seconds on one core", [1e-6, 0.06], |series| series.seconds)?,
+    ])
 }
 
 fn error_figure(
     name: &'static str,
     unit: &str,
     [low, high]: [f64; 2],
-    cost: impl Fn(&Series) -> f64,
-    ways: &[Series],
-    endings: &[Series],
+    cost: fn(&Series) -> f64,
+    [ways, endings]: [&[Series]; 2],
     seed: u64,
 ) -> Result<Figure> {
     let mut panels = Vec::new();
@@ -411,7 +361,8 @@ fn error_figure(
             let Series { label, ink, marker, .. } = *series;
             let work = cost(series);
             panel.marks(label, ink, marker, series.measured.iter().map(|[n, rmse]| [n * work, *rmse]));
-            if !series.found_none() {
+            // where none of the paths found the light there is no line
+            if series.spread > 0.0 {
                 panel.curve(label, ink, |c| if c >= work { series.rmse(c / work) } else { f64::NAN });
             }
             panel.named(&format!("{} {label}", marker.sign()));
@@ -421,17 +372,18 @@ fn error_figure(
     let all_light = if endings.is_empty() {
         "All light is left out: an albedo is too large for absorption to end a path."
     } else {
-        "All light: paths of at most two or four bounces level off at what they leave out, paths ended by \
-         roulette fall on."
+        "All light: the errors of paths of at most two or four bounces level off at the light that they \
+         leave out, those of paths ended by roulette keep falling."
     };
     let left_out = ways.len() < 4 || (1..4).contains(&endings.len());
-    Plot::of(name, 78.0, panels)
-        .titled(format!("What the ways of sampling cost: error against {unit}"), format!(
+    Plot::of(name, 78.0, panels).draw(
+        format!("What the ways of sampling cost: error against {unit}"),
+        format!(
             "Root mean square error relative to the truth against {unit}, both logarithmic. Light after at \
-             most two bounces, by four ways of sampling: the lower a line, the fewer {unit} an error takes. \
-             {all_light} Lines: from a path's variance, bias and cost; points: 100 runs each (seed \
-             {seed}).{}",
+             most two bounces, by four ways of sampling: the lower a line, the fewer {unit} are needed for \
+             the same error. {all_light} Lines: from a path's variance, bias and cost; points: 100 runs each \
+             (seed {seed}).{}",
             if left_out { " Ways whose variance may be infinite are left out." } else { "" }
-        ))
-        .draw()
+        ),
+    )
 }

@@ -5,15 +5,16 @@ use glam::DVec3;
 use crate::error::{Result, require_count};
 use crate::paths::room::{BoxRoom, Face, Vertex};
 use crate::paths::{Path, Paths};
-use crate::plot::Labels;
-use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Width};
+use crate::plot::{Axis, Edition, Figure, Ink, Labels, Marker, Panel, Plot, Side};
 use crate::stream::Stream;
 
 /// The visible part of the room, in metres.
 const LOW: [f64; 2] = [-2.25, -0.2];
 const HIGH: [f64; 2] = [2.25, 4.3];
-/// Points of print per metre: the figure is 150 mm wide, with a margin of 2 points on both sides.
-const SCALE: f64 = (150.0 * 72.0 / 25.4 - 4.0) / (HIGH[0] - LOW[0]);
+/// Room for students to draw into.
+const WIDTH_MM: f64 = 150.0;
+/// Points of print per metre, with a margin of 2 points on both sides.
+const SCALE: f64 = (WIDTH_MM * 72.0 / 25.4 - 4.0) / (HIGH[0] - LOW[0]);
 /// The height at which both axes have this scale, with 22 points above and below.
 const HEIGHT_MM: f64 = (SCALE * (HIGH[1] - LOW[1]) + 22.0) * 25.4 / 72.0;
 
@@ -37,21 +38,6 @@ const CANDIDATES: usize = 300;
 /// reach it, and fewer than `count` are usually drawn.
 ///
 /// The room is seen from the south, or from the east if p would be before or behind the cube.
-///
-/// ```
-/// use unbiased::paths::room::{BoxRoom, Scene};
-/// use unbiased::paths::figures;
-/// use unbiased::lambertian::hemisphere::Hemisphere;
-/// use unbiased::paths::{Bounces, FindLight, Paths};
-///
-/// let room = BoxRoom::new(Scene::default())?;
-/// let paths = |k| Paths::new(room, Bounces::Exactly(k), Hemisphere::Cosine, FindLight::BySampling);
-/// let [to_fill_in, solved] = figures::paths_drawn(&paths(2)?, 3, 1)?;
-/// assert_eq!([to_fill_in.name(), solved.name()], ["4_1_paths_student", "4_1_paths"]);
-/// assert_eq!(solved.title(), "Three sampled paths of two bounces");
-/// assert!(figures::paths_drawn(&paths(5)?, 3, 1).is_err());
-/// # Ok::<(), unbiased::Error>(())
-/// ```
 ///
 /// # Errors
 /// If `paths` counts up to any other number of bounces than two or three, or the figures cannot be drawn.
@@ -164,7 +150,8 @@ impl SideView {
             .collect();
         // where p lies in a corner, the room alone may be too crowded; paths must not add to that, up to
         // rounding
-        let crowded = self.picture(&[], Edition::Solution).1;
+        let in_the_way = |paths: &[Drawn]| self.picture(paths, Edition::Solution).labels.in_the_way();
+        let crowded = in_the_way(&[]);
         let mut most = Vec::new();
         // the first one may leave no room for others: then start with the next one
         for first in 0..candidates.len() {
@@ -174,7 +161,7 @@ impl SideView {
                     return chosen;
                 }
                 chosen.push(path.clone());
-                if !self.told_apart(&chosen) || self.picture(&chosen, Edition::Solution).1 > crowded + 1e-9 {
+                if !self.told_apart(&chosen) || in_the_way(&chosen) > crowded + 1e-9 {
                     chosen.pop();
                 }
             }
@@ -197,20 +184,14 @@ impl SideView {
     fn whole(&self, path: Path, bounces: u32) -> Option<Drawn> {
         let Path { mut vertices, samples, light } = path;
         let bounces = bounces as usize;
-        if light <= 0.0 {
-            return None;
-        }
         let point = match samples.last() {
             Some(sample) => (sample.visible && sample.from + 1 == bounces).then_some(sample.point)?,
             // found by chance: the last vertex is on the light
             None => vertices.pop_if(|last| self.room.is_light(last))?.position(),
         };
-        if vertices.len() != bounces {
-            return None;
-        }
-        let line =
-            vertices.iter().map(|vertex| self.seen(vertex.position())).chain([self.seen(point)]).collect();
-        Some(Drawn { vertices, line })
+        let points = vertices.iter().map(Vertex::position).chain([point]);
+        let line = points.map(|at| self.seen(at)).collect();
+        (light > 0.0 && vertices.len() == bounces).then_some(Drawn { vertices, line })
     }
 
     /// Whether a path is legible on its own.
@@ -234,35 +215,26 @@ impl SideView {
 
     /// Whether the last path can be told from those before it.
     fn told_apart(&self, paths: &[Drawn]) -> bool {
-        let points = |path: &Drawn, least: usize| {
-            path.line.get(least..path.line.len().saturating_sub(1)).unwrap_or_default().to_vec()
-        };
-        let vertices: Vec<_> = paths.iter().flat_map(|path| points(path, 1)).chain([self.p()]).collect();
+        let later = paths.iter().flat_map(|path| path.vertices.iter().skip(1));
+        let vertices: Vec<_> = later.map(|vertex| self.seen(vertex.position())).chain([self.p()]).collect();
         let ends: Vec<_> = paths.iter().filter_map(|path| path.line.last().copied()).collect();
         let apart = |points: &[[f64; 2]], least: f64| {
             points.iter().enumerate().all(|(i, a)| points.iter().take(i).all(|b| distance(*a, *b) > least))
         };
+        let legs = || paths.iter().flat_map(|path| segments(&path.line));
+        let first_legs = || paths.iter().filter_map(|path| segments(&path.line).next());
         // arrows of all paths, and p's own
-        let mut tips = vec![self.to_eye(), self.tip_of_normal(&self.room.point())];
-        tips.extend(paths.iter().filter_map(|path| match *path.line {
-            [p, next, ..] => Some(direction(p, next, 0.8)),
-            _ => None,
-        }));
+        let tips: Vec<_> = [self.to_eye(), self.tip_of_normal(&self.room.point())]
+            .into_iter()
+            .chain(first_legs().map(|[p, next]| direction(p, next, 0.8)))
+            .collect();
         // an arrow must not lie on another path's line
-        let legs = || {
-            let eye = [self.p(), self.eye()];
-            paths.iter().flat_map(|path| segments(&path.line)).chain([eye])
-        };
-        let arrows_apart = paths.iter().filter_map(|path| segments(&path.line).next()).all(|first| {
-            let arrow = [0.6, 0.8].map(|at| direction(first[0], first[1], at));
-            legs().filter(|leg| *leg != first).all(|leg| arrow.iter().all(|at| distance_to(leg, *at) > 0.1))
+        let arrows_apart = first_legs().all(|first @ [p, next]| {
+            let mut others = legs().chain([[self.p(), self.eye()]]).filter(|leg| *leg != first);
+            others.all(|leg| [0.6, 0.8].iter().all(|at| distance_to(leg, direction(p, next, *at)) > 0.1))
         });
-        let off_lines = |at: [f64; 2], least: f64| {
-            paths
-                .iter()
-                .flat_map(|path| segments(&path.line))
-                .all(|segment| segment.contains(&at) || distance_to(segment, at) > least)
-        };
+        let off_lines =
+            |at: [f64; 2], least: f64| legs().all(|leg| leg.contains(&at) || distance_to(leg, at) > least);
         let vertex_normals =
             paths.iter().flat_map(|path| &path.vertices).map(|vertex| self.tip_of_normal(vertex));
         // the light is small: points on it may be closer
@@ -275,48 +247,45 @@ impl SideView {
             && vertex_normals.chain([self.to_eye()]).all(|tip| off_lines(tip, 0.12))
     }
 
-    /// The drawing without its heading, and how much its labels overlap other things.
-    fn picture(&self, chosen: &[Drawn], edition: Edition) -> (Vec<Panel>, f64) {
-        let metres = |name: &str, axis: usize| Axis::linear(name, LOW[axis], HIGH[axis]);
-        let mut panel = Panel::new("", metres("across (m)", 0), metres("z (m)", 1));
-        panel.bare = true;
-        let mut labels = Labels::new(LOW, HIGH, SCALE);
-        self.draw_room(&mut panel, &mut labels);
+    /// The drawing without its heading.
+    fn picture(&self, chosen: &[Drawn], edition: Edition) -> Sketch {
+        let mut sketch = Sketch::new();
+        self.draw_room(&mut sketch);
         let (p, eye) = (self.p(), self.eye());
         if edition == Edition::Solution {
             for path in chosen {
-                labels.avoid(&path.line);
+                sketch.labels.avoid(&path.line);
             }
             let to_eye = self.to_eye();
-            panel.line("to the eye", Ink::Black, [p, eye]);
-            labels.avoid(&[p, eye]);
-            draw_arrow(Ink::Black, p, to_eye, &mut panel, &mut labels);
-            self.draw_normal(&self.room.point(), &mut panel, &mut labels);
+            sketch.line("to the eye", Ink::Black, &[p, eye]);
+            sketch.arrow(Ink::Black, p, to_eye);
+            self.draw_normal(&self.room.point(), &mut sketch);
             for (path, (ink, number, digit)) in chosen.iter().zip(INKS) {
-                self.draw_path(path, ink, number, digit, &mut panel, &mut labels);
+                self.draw_path(path, ink, number, digit, &mut sketch);
             }
-            labels.place(&mut panel, Ink::Black, to_eye, "ωₒ");
+            sketch.label(Ink::Black, to_eye, "ωₒ");
         }
         if self.room.scene().light_half_width > 0.0 {
-            labels.place(&mut panel, Ink::Black, [0.0, Face::ROOM_HEIGHT + 0.06], "light");
+            sketch.label(Ink::Black, [0.0, Face::ROOM_HEIGHT + 0.06], "light");
         }
+        let panel = &mut sketch.panel;
         panel.marks("eye", Ink::Black, Marker::Ring, [eye]).marks("eye", Ink::Black, Marker::Dot, [eye]);
         panel.marks("p", Ink::Black, Marker::Disc, [p]);
-        labels.place(&mut panel, Ink::Black, eye, "eye");
-        labels.place(&mut panel, Ink::Black, p, "p");
-        let in_the_way = labels.in_the_way();
-        (vec![panel], in_the_way)
+        sketch.label(Ink::Black, eye, "eye");
+        sketch.label(Ink::Black, p, "p");
+        sketch
     }
 
     fn drawing(&self, bounces: u32, chosen: &[Drawn], seed: u64, edition: Edition) -> Result<Figure> {
         let (name, word) = if bounces == 2 { ("4_1_paths", "two") } else { ("4_2_paths", "three") };
-        let (mut panels, _) = self.picture(chosen, edition);
-        for panel in &mut panels {
-            let from = if self.from_east { "the east, along x" } else { "the south, along y" };
-            panel.heading = format!("Paths of {word} bounces in the room, seen from the side: from {from}");
-        }
-        let number = ["No", "One", "Two", "Three"].get(chosen.len()).unwrap_or(&"Some");
-        let paths = if chosen.len() == 1 { "path" } else { "paths" };
+        let from = if self.from_east { "the east, along x" } else { "the south, along y" };
+        let Sketch { mut panel, .. } = self.picture(chosen, edition);
+        panel.heading = format!("Paths of {word} bounces in the room, seen from the side: from {from}");
+        let sampled = match chosen.len() {
+            1 => "One sampled path",
+            2 => "Two sampled paths",
+            _ => "Three sampled paths",
+        };
         let (title, description) = match edition {
             Edition::Student => (
                 format!("Draw paths of {word} bounces to p"),
@@ -326,14 +295,10 @@ impl SideView {
             ),
             Edition::Solution if chosen.is_empty() => {
                 let why = if self.can_be_lit() {
-                    format!(
-                        "Of {TRIED} paths (seed {seed}) none reached the light and could be made out in a \
-                         drawing"
-                    )
+                    &format!("Of {TRIED} paths (seed {seed}) none that reached the light can be made out")
                 } else {
                     "No light leaves p after that many bounces: there is no light, or what the paths meet \
                      reflects none"
-                        .into()
                 };
                 (
                     format!("No sampled paths of {word} bounces"),
@@ -343,87 +308,93 @@ impl SideView {
                 )
             }
             Edition::Solution => (
-                format!("{number} sampled {paths} of {word} bounces"),
+                format!("{sampled} of {word} bounces"),
                 format!(
                     "The room seen from the side. Numbered paths, as they were sampled (seed {seed}), go \
                      from p in a direction ωᵢ to a point p₁, p₂, … on another face{} and on to the light, \
-                     none through the cube; ωₒ leads from p to the eye. Short arrows are normals n. What \
-                     looks short may lead far in depth.",
+                     none through the cube; ωₒ leads from p to the eye. Short arrows are normals n. A \
+                     segment that looks short may be long along the line of sight.",
                     if bounces > 2 { ", from there to p₁′, p₂′, …" } else { "" }
                 ),
             ),
         };
-        Plot {
-            name,
-            title,
-            description,
-            edition,
-            width: Width::Drawing,
-            height_mm: HEIGHT_MM,
-            columns: 1,
-            panels,
-        }
-        .draw()
+        let plot = Plot::of(name, HEIGHT_MM, vec![panel]);
+        Plot { edition, width_mm: WIDTH_MM, ..plot }.draw(title, description)
     }
 
-    fn draw_room(&self, panel: &mut Panel, labels: &mut Labels) {
+    fn draw_room(&self, sketch: &mut Sketch) {
         let (w, h) = (Face::ROOM_HALF_WIDTH, Face::ROOM_HEIGHT);
         let (c, t) = (Face::CUBE_HALF_WIDTH, Face::CUBE_HEIGHT);
-        let room = [[-w, 0.0], [w, 0.0], [w, h], [-w, h], [-w, 0.0]];
-        let cube = [[-c, 0.0], [-c, t], [c, t], [c, 0.0]];
-        panel.band("cube", Ink::Grey, [[-c, 0.0, t], [c, 0.0, t]]);
-        panel.line("room", Ink::Black, room).line("cube", Ink::Black, cube);
-        labels.avoid(&room);
-        labels.avoid(&cube);
+        sketch.panel.band("cube", Ink::Grey, [[-c, 0.0, t], [c, 0.0, t]]);
+        sketch.line("room", Ink::Black, &[[-w, 0.0], [w, 0.0], [w, h], [-w, h], [-w, 0.0]]);
+        sketch.line("cube", Ink::Black, &[[-c, 0.0], [-c, t], [c, t], [c, 0.0]]);
         let light = self.room.scene().light_half_width;
         if light > 0.0 {
             let (low, high) = (h - 0.03, h + 0.06);
-            panel.band("light", Ink::Black, [[-light, low, high], [light, low, high]]);
+            sketch.panel.band("light", Ink::Black, [[-light, low, high], [light, low, high]]);
             let outline = [[-light, low], [light, low], [light, high], [-light, high], [-light, low]];
-            panel.line("light", Ink::Black, outline);
-            labels.avoid(&outline);
+            sketch.line("light", Ink::Black, &outline);
         }
     }
 
-    fn draw_path(
-        &self,
-        path: &Drawn,
-        ink: Ink,
-        number: &str,
-        digit: &str,
-        panel: &mut Panel,
-        labels: &mut Labels,
-    ) {
-        panel.line(&format!("path {number}"), ink, path.line.iter().copied());
-        if let [p, next, ..] = *path.line {
+    /// A path, whose line labels keep off already.
+    fn draw_path(&self, path: &Drawn, ink: Ink, number: &str, digit: &str, sketch: &mut Sketch) {
+        sketch.panel.line(&format!("path {number}"), ink, path.line.iter().copied());
+        if let Some([p, next]) = segments(&path.line).next() {
             let tip = direction(p, next, 0.8);
-            draw_arrow(ink, direction(p, next, 0.55), tip, panel, labels);
-            labels.place(panel, ink, tip, &format!("ωᵢ{digit}"));
-            labels.place(panel, ink, [0.4 * p[0] + 0.6 * next[0], 0.4 * p[1] + 0.6 * next[1]], number);
+            sketch.arrow(ink, direction(p, next, 0.55), tip);
+            sketch.label(ink, tip, &format!("ωᵢ{digit}"));
+            sketch.label(ink, [0.4 * p[0] + 0.6 * next[0], 0.4 * p[1] + 0.6 * next[1]], number);
         }
         for (vertex, prime) in path.vertices.iter().skip(1).zip(PRIMES) {
-            self.draw_normal(vertex, panel, labels);
-            panel.marks("p_j", ink, Marker::Disc, [self.seen(vertex.position())]);
-            labels.place(panel, ink, self.seen(vertex.position()), &format!("p{digit}{prime}"));
+            self.draw_normal(vertex, sketch);
+            let at = self.seen(vertex.position());
+            sketch.panel.marks("p_j", ink, Marker::Disc, [at]);
+            sketch.label(ink, at, &format!("p{digit}{prime}"));
         }
-        panel.marks("point of the light", ink, Marker::Disc, path.line.last().copied());
+        sketch.panel.marks("point of the light", ink, Marker::Disc, path.line.last().copied());
     }
 
     /// The normal at a vertex, which is on a face seen edge on.
-    fn draw_normal(&self, vertex: &Vertex, panel: &mut Panel, labels: &mut Labels) {
+    fn draw_normal(&self, vertex: &Vertex, sketch: &mut Sketch) {
         let tip = self.tip_of_normal(vertex);
-        draw_arrow(Ink::Grey, self.seen(vertex.position()), tip, panel, labels);
-        labels.place(panel, Ink::Grey, tip, "n");
+        sketch.arrow(Ink::Grey, self.seen(vertex.position()), tip);
+        sketch.label(Ink::Grey, tip, "n");
     }
 }
 
-/// An arrow, whose line and head labels must not cover.
-fn draw_arrow(ink: Ink, from: [f64; 2], to: [f64; 2], panel: &mut Panel, labels: &mut Labels) {
-    panel.arrow(ink, from, to);
-    let length = distance(from, to).max(1e-9);
-    let (x, y) = ((to[0] - from[0]) / length, (to[1] - from[1]) / length);
-    // heads are 6 points long and 4.8 wide
-    let barb = |aside: f64| [to[0] - (6.0 * x - aside * y) / SCALE, to[1] - (6.0 * y + aside * x) / SCALE];
-    labels.avoid(&[from, to]);
-    labels.avoid(&[barb(2.4), to, barb(-2.4), barb(2.4)]);
+/// A drawing, and what its labels keep off.
+struct Sketch {
+    panel: Panel,
+    labels: Labels,
+}
+
+impl Sketch {
+    fn new() -> Self {
+        let metres = |name: &str, axis: usize| Axis::linear(name, LOW[axis], HIGH[axis]);
+        let axes = Panel::new("", metres("across (m)", 0), metres("z (m)", 1));
+        Self { panel: Panel { bare: true, ..axes }, labels: Labels::new(LOW, HIGH, SCALE) }
+    }
+
+    fn line(&mut self, series: &str, ink: Ink, points: &[[f64; 2]]) {
+        self.panel.line(series, ink, points.iter().copied());
+        self.labels.avoid(points);
+    }
+
+    fn arrow(&mut self, ink: Ink, from: [f64; 2], to: [f64; 2]) {
+        self.panel.arrow(ink, from, to);
+        let length = distance(from, to).max(1e-9);
+        let (x, y) = ((to[0] - from[0]) / length, (to[1] - from[1]) / length);
+        // heads are 6 points long and 4.8 wide
+        let barb =
+            |aside: f64| [to[0] - (6.0 * x - aside * y) / SCALE, to[1] - (6.0 * y + aside * x) / SCALE];
+        self.labels.avoid(&[from, to]);
+        self.labels.avoid(&[barb(2.4), to, barb(-2.4), barb(2.4)]);
+    }
+
+    fn label(&mut self, ink: Ink, at: [f64; 2], text: &str) {
+        if let Some(middle) = self.labels.beside(&[at], text) {
+            self.panel.text(ink, middle, Side::Centre, text);
+        }
+    }
 }

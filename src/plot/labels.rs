@@ -1,7 +1,5 @@
 //! Placing labels in a drawing: beside their points, without covering lines or each other.
 
-use super::panel::{Ink, Panel, Side};
-
 /// A rectangle given by its centre, in the drawing's units.
 #[derive(Debug, Clone, Copy)]
 struct Box2 {
@@ -104,13 +102,6 @@ impl Labels {
     /// Keeps labels off what is there already, so many points wide and high.
     pub fn keep_off(&mut self, middle: [f64; 2], size: [f64; 2]) {
         self.taken.push(Box2 { middle, half: size.map(|size| 0.5 * size / self.scale) });
-    }
-
-    /// Places a text beside `at`.
-    pub fn place(&mut self, panel: &mut Panel, ink: Ink, at: [f64; 2], text: &str) {
-        if let Some(middle) = self.beside(&[at], text) {
-            panel.text(ink, middle, Side::Centre, text);
-        }
     }
 
     /// The middle of a text beside one of these points, of the first of those where it is least in the way.

@@ -1,23 +1,25 @@
 //! Figures as SVG, with their numbers as CSV.
 //!
-//! Every figure has a title and a description for readers who cannot see it, is 85 or 170 mm wide, can be
-//! read in grey, and has the same bytes on every run. If a question asks the student to mark or draw
+//! Every figure has a title and a description for readers who cannot see it, is 85, 150 or 170 mm wide,
+//! can be read in grey, and has the same bytes on every run. If a question asks the student to mark or draw
 //! something there are two editions: [`Edition::Student`] has the same canvas and axes without the answer.
 
+mod axis;
+mod document;
+mod figure;
 mod labels;
+mod layout;
 mod panel;
 mod render;
 mod slide;
 
+pub use figure::Figure;
+
+pub(crate) use axis::Axis;
+pub(crate) use figure::write_whole;
 pub(crate) use labels::Labels;
-pub(crate) use panel::{Axis, Ink, Marker, Panel, Plot, Side, Width};
-
-use std::fmt::Write as _;
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
-
-use crate::error::{Error, Result};
+pub(crate) use layout::Plot;
+pub(crate) use panel::{Ink, Marker, Panel, Side};
 
 /// For whom a figure or page is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,219 +28,4 @@ pub enum Edition {
     Student,
     /// With the answer.
     Solution,
-}
-
-/// A drawn figure: the picture, and the numbers in it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Figure {
-    name: String,
-    title: String,
-    description: String,
-    edition: Edition,
-    svg: String,
-    csv: String,
-}
-
-impl Figure {
-    /// The file name without extension: the question's number and a word, and `_student` in that edition.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// The title: what the figure shows, in one line.
-    pub fn title(&self) -> &str {
-        &self.title
-    }
-
-    /// The description for readers who cannot see it.
-    pub(crate) fn description(&self) -> &str {
-        &self.description
-    }
-
-    /// For whom it was drawn.
-    pub fn edition(&self) -> Edition {
-        self.edition
-    }
-
-    /// The picture: an SVG document with a title, a description and sizes in mm.
-    pub fn svg(&self) -> &str {
-        &self.svg
-    }
-
-    /// The numbers drawn, to six significant digits, one row per point: `panel,series,x,y,low,high`.
-    pub fn csv(&self) -> &str {
-        &self.csv
-    }
-
-    /// The same on a slide of 16 to 9, below its title in large type: `name_slide`. It has no CSV.
-    pub fn slide(&self) -> Self {
-        let name = format!("{}_slide", self.name);
-        Self { svg: slide::svg(self, &name), csv: String::new(), name, ..self.clone() }
-    }
-
-    /// Writes `name.svg` and `name.csv` into `folder`, which is created if necessary (with the features `png`
-    /// and `pdf` those formats, too). Each file is written completely or not at all. Returns the paths, the
-    /// SVG's first.
-    ///
-    /// # Errors
-    /// If the folder or a file cannot be written.
-    pub fn save(&self, folder: &Path) -> Result<Vec<PathBuf>> {
-        let mut files = vec![("svg", self.svg.clone().into_bytes()), ("csv", self.csv.clone().into_bytes())];
-        files.retain(|(_, bytes)| !bytes.is_empty());
-        #[cfg(feature = "png")]
-        files.push(("png", self.png(300.0)?));
-        #[cfg(feature = "pdf")]
-        files.push(("pdf", self.pdf()?));
-        files
-            .into_iter()
-            .map(|(ending, bytes)| {
-                let path = folder.join(format!("{}.{ending}", self.name));
-                write_whole(&path, &bytes)?;
-                Ok(path)
-            })
-            .collect()
-    }
-
-    /// The picture as PNG, at this many dots per inch, on white.
-    ///
-    /// # Errors
-    /// If the picture cannot be drawn at this size.
-    #[cfg(feature = "png")]
-    pub fn png(&self, dots_per_inch: f32) -> Result<Vec<u8>> {
-        use resvg::{tiny_skia, usvg};
-        let failed = |reason: String| Error::Draft { what: self.name.clone(), reason };
-        let mut options = usvg::Options::default();
-        provide_fonts(options.fontdb_mut());
-        let tree = usvg::Tree::from_str(&self.svg, &options).map_err(|error| failed(error.to_string()))?;
-        let scale = dots_per_inch / 96.0;
-        let size =
-            tree.size().to_int_size().scale_by(scale).ok_or_else(|| failed("it has no size".into()))?;
-        let mut pixels = tiny_skia::Pixmap::new(size.width(), size.height())
-            .ok_or_else(|| failed("it has no size".into()))?;
-        pixels.fill(tiny_skia::Color::WHITE);
-        resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixels.as_mut());
-        pixels.encode_png().map_err(|error| failed(error.to_string()))
-    }
-
-    /// The picture as a PDF page of the same size. Its bytes may differ between runs, its content does not.
-    ///
-    /// # Errors
-    /// If the picture cannot be converted.
-    #[cfg(feature = "pdf")]
-    pub fn pdf(&self) -> Result<Vec<u8>> {
-        use svg2pdf::usvg;
-        let failed = |reason: String| Error::Draft { what: self.name.clone(), reason };
-        let mut options = usvg::Options::default();
-        provide_fonts(options.fontdb_mut());
-        let tree = usvg::Tree::from_str(&self.svg, &options).map_err(|error| failed(error.to_string()))?;
-        svg2pdf::to_pdf(&tree, Default::default(), Default::default())
-            .map_err(|error| failed(error.to_string()))
-    }
-}
-
-/// Provides the fonts used for the SVG's layout, so that no system font is needed.
-#[cfg(any(feature = "png", feature = "pdf"))]
-fn provide_fonts(fonts: &mut usvg_fonts::Database) {
-    fonts.load_font_data(dejavu::sans::regular().to_vec());
-    fonts.load_font_data(dejavu::sans::bold().to_vec());
-    fonts.set_sans_serif_family("DejaVu Sans");
-}
-
-#[cfg(all(feature = "png", not(feature = "pdf")))]
-use resvg::usvg::fontdb as usvg_fonts;
-#[cfg(feature = "pdf")]
-use svg2pdf::usvg::fontdb as usvg_fonts;
-
-/// Writes a file completely or not at all, and creates its folder if necessary. If several threads or
-/// processes write the same file at once, the last complete one stays.
-pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let failed =
-        |error: std::io::Error| Error::Write { path: path.display().to_string(), reason: error.to_string() };
-    if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder).map_err(failed)?;
-    }
-    // a temporary name that no other writer uses
-    static COUNT: AtomicU64 = AtomicU64::new(0);
-    let mut part = path.as_os_str().to_owned();
-    part.push(format!(".{}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
-    fs::write(&part, bytes).and_then(|()| fs::rename(&part, path)).map_err(|error| {
-        // remove the temporary file; if that fails, too, report the first error
-        let _ = fs::remove_file(&part);
-        failed(error)
-    })
-}
-
-/// Six significant digits, so that different last digits of ln and sin on other machines do not show.
-fn six_digits(x: f64) -> String {
-    if x == 0.0 || !x.is_finite() {
-        return format!("{x}");
-    }
-    let size = x.abs().log10();
-    if (-4.0..15.0).contains(&size) {
-        // `{:e}` rounds to significant digits
-        let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
-        format!("{rounded}")
-    } else {
-        let mut text = String::new();
-        // writing to a String cannot fail
-        let _ = write!(text, "{x:.5e}");
-        text
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_keep_six_digits() {
-        for (x, shown) in [
-            (0.0, "0"),
-            (1.0, "1"),
-            (-0.25, "-0.25"),
-            (1.386_294_361_119_890_6, "1.38629"),
-            (123_456_789.0, "123457000"),
-            (0.000_123_456_789, "0.000123457"),
-            (1.234_567_89e-9, "1.23457e-9"),
-            (9.999_999_9e20, "1.00000e21"),
-            (f64::INFINITY, "inf"),
-        ] {
-            assert_eq!(six_digits(x), shown);
-        }
-    }
-
-    #[test]
-    fn a_file_appears_whole_or_not_at_all() {
-        let folder = std::env::temp_dir().join(format!("unbiased-{}", std::process::id()));
-        let path = folder.join("deep").join("file.txt");
-        write_whole(&path, b"whole").unwrap();
-        assert_eq!(fs::read(&path).unwrap(), b"whole");
-        // a folder where the file should be
-        let taken = folder.join("taken");
-        fs::create_dir_all(taken.join("inside")).unwrap();
-        assert!(matches!(write_whole(&taken, b"x"), Err(Error::Write { .. })));
-        let mut left: Vec<_> =
-            fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-        left.sort();
-        assert_eq!(left, ["deep", "taken"]);
-        fs::remove_dir_all(&folder).unwrap();
-    }
-
-    #[test]
-    fn writers_of_one_file_do_not_disturb_each_other() {
-        let folder = std::env::temp_dir().join(format!("unbiased-writers-{}", std::process::id()));
-        let figure = crate::lambertian::figures::integrand().unwrap();
-        let write = || (0..50).try_for_each(|_| figure.save(&folder).map(|_| ()));
-        std::thread::scope(|scope| {
-            let writers: Vec<_> = (0..8).map(|_| scope.spawn(write)).collect();
-            assert!(writers.into_iter().all(|writer| writer.join().unwrap().is_ok()));
-        });
-        assert_eq!(fs::read_to_string(folder.join("3_2_integrand.svg")).unwrap(), figure.svg());
-        let left = fs::read_dir(&folder).unwrap().count();
-        assert_eq!(left, figure.save(&folder).unwrap().len());
-        // a file where the folder should be
-        let refused = figure.save(&folder.join("3_2_integrand.svg")).unwrap_err().to_string();
-        assert!(refused.contains("could not be written"), "{refused}");
-        fs::remove_dir_all(&folder).unwrap();
-    }
 }

@@ -8,12 +8,11 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontFamily, register_font};
 
+use super::document::{DASHES, MM};
 use super::labels::{LINE, Labels, size, width};
-use super::panel::{Ink, Item, Marker, Panel, Plot, Side};
-use crate::error::{Error, Result};
+use super::panel::{Ink, Item, Marker, Panel, Side};
+use super::{Axis, Plot};
 
-/// Units per millimetre: ten per CSS pixel of 1/96 inch.
-const MM: f64 = 960.0 / 25.4;
 /// Units per typographic point.
 const PT: f64 = 960.0 / 72.0;
 
@@ -21,23 +20,21 @@ const INK: RGBColor = RGBColor(0x22, 0x22, 0x22);
 const GREY: RGBColor = RGBColor(0x88, 0x88, 0x88);
 const FAINT: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
 
-/// plotters has no dashes: lines get one of these opacities, which `finish` replaces by the dash pattern.
-const DASHES: [(f64, &str); 3] = [(0.991, "75 30"), (0.992, "90 30 15 30"), (0.993, "15 25")];
-
-/// Fonts that have all characters used, in order of preference.
-const FONTS: &str = "font-family=\"DejaVu Sans, Noto Sans, Noto Sans Math, STIX Two Math, sans-serif\"";
-
-/// The white outline of texts.
-const EDGE: &str = " stroke=\"#FFFFFF\" stroke-width=\"24\" paint-order=\"stroke\"";
-
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-pub(super) fn svg(plot: &Plot, name: &str) -> Result<String> {
+/// All panels, as plotters writes them.
+pub(super) fn body(plot: &Plot) -> Result<String, String> {
     register_fonts();
-    let size = ((plot.width.millimetres() * MM) as u32, (plot.height_mm * MM) as u32);
     let mut svg = String::new();
-    draw(plot, &mut svg, size).map_err(|reason| Error::Draft { what: name.into(), reason })?;
-    Ok(finish(plot, name, &svg))
+    let size = ((plot.width_mm * MM) as u32, (plot.height_mm * MM) as u32);
+    let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+    let columns = plot.columns.max(1);
+    let areas = root.split_evenly((plot.panels.len().div_ceil(columns), columns));
+    let drawn = plot.panels.iter().zip(&areas).try_for_each(|(panel, area)| draw_panel(panel, area));
+    drawn.and_then(|()| root.present()).map_err(|error| error.to_string())?;
+    drop((root, areas));
+    Ok(svg)
 }
 
 /// plotters needs a font's metrics even for SVG; this one has all Greek letters and symbols needed.
@@ -50,18 +47,6 @@ fn register_fonts() {
     });
 }
 
-fn draw(plot: &Plot, svg: &mut String, size: (u32, u32)) -> Result<(), String> {
-    let root = SVGBackend::with_string(svg, size).into_drawing_area();
-    let columns = plot.columns.max(1);
-    let areas = root.split_evenly((plot.panels.len().div_ceil(columns), columns));
-    for (panel, area) in plot.panels.iter().zip(&areas) {
-        draw_panel(panel, area).map_err(|error| error.to_string())?;
-    }
-    root.present().map_err(|error| error.to_string())
-}
-
-type Drawn = std::result::Result<(), DrawingAreaErrorKind<std::io::Error>>;
-
 /// Where the axes of a panel are, in units.
 struct Frame<'p> {
     panel: &'p Panel,
@@ -72,48 +57,45 @@ struct Frame<'p> {
 }
 
 impl Frame<'_> {
-    fn at(&self, [x, y]: [f64; 2]) -> (i32, i32) {
-        let (x, y) = (self.panel.x.place(x), self.panel.y.place(y));
+    /// Where a point is on the axes, from 0 to 1.
+    fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [self.panel.x.place(x), self.panel.y.place(y)]
+    }
+
+    /// The unit nearest to a place.
+    fn lattice(&self, [x, y]: [f64; 2]) -> (i32, i32) {
         (
             (self.left + x * (self.right - self.left)).round() as i32,
             (self.bottom - y * (self.bottom - self.top)).round() as i32,
         )
     }
 
+    fn at(&self, point: [f64; 2]) -> (i32, i32) {
+        self.lattice(self.place(point))
+    }
+
     fn holds(&self, [x, y]: [f64; 2]) -> bool {
-        let inside = |place: f64| (-1e-9..=1.0 + 1e-9).contains(&place);
-        inside(self.panel.x.place(x)) && inside(self.panel.y.place(y))
+        self.panel.x.holds(x) && self.panel.y.holds(y)
     }
 
     /// Whether a text there would be on the axes or just beside them.
-    fn is_near(&self, [x, y]: [f64; 2]) -> bool {
-        let near = |place: f64| (-0.25..=1.25).contains(&place);
-        near(self.panel.x.place(x)) && near(self.panel.y.place(y))
+    fn is_near(&self, point: [f64; 2]) -> bool {
+        self.place(point).iter().all(|place| (-0.25..=1.25).contains(place))
     }
 
     /// The parts of a curve inside the axes, in units.
     fn clip(&self, points: &[[f64; 2]]) -> Vec<Vec<(i32, i32)>> {
-        let (x_axis, y_axis) = (&self.panel.x, &self.panel.y);
-        let placed = points.iter().map(|&[x, y]| [x_axis.place(x), y_axis.place(y)]).collect::<Vec<_>>();
-        let lattice = |[x, y]: [f64; 2]| {
-            (
-                (self.left + x * (self.right - self.left)).round() as i32,
-                (self.bottom - y * (self.bottom - self.top)).round() as i32,
-            )
-        };
         let mut runs: Vec<Vec<(i32, i32)>> = Vec::new();
         let mut end = None;
-        for pair in placed.windows(2) {
-            let &[from, to] = pair else { continue };
-            let Some([a, b]) = clip_segment(from, to) else {
-                end = None;
-                continue;
-            };
-            match runs.last_mut() {
-                Some(run) if end == Some(a) => run.push(lattice(b)),
-                _ => runs.push(vec![lattice(a), lattice(b)]),
+        for (from, to) in points.iter().zip(points.iter().skip(1)) {
+            let inside = clip_segment(self.place(*from), self.place(*to));
+            if let Some([a, b]) = inside {
+                match runs.last_mut() {
+                    Some(run) if end == Some(a) => run.push(self.lattice(b)),
+                    _ => runs.push(vec![self.lattice(a), self.lattice(b)]),
+                }
             }
-            end = Some(b);
+            end = inside.map(|[_, b]| b);
         }
         runs
     }
@@ -144,15 +126,14 @@ fn clip_segment(from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
 
 fn draw_panel(panel: &Panel, area: &Area<'_>) -> Drawn {
     let (across, down) = area.dim_in_pixel();
-    let widest = panel.y.ticks.iter().map(|(_, label)| label.chars().count()).max().unwrap_or(0) as f64;
-    // a few characters may all be wide, many are not
-    let beside = if panel.bare { 2.0 } else { 20.0 + 5.4 * widest.min(8.0) + 4.4 * (widest - 8.0).max(0.0) };
+    let [left, right, bottom] =
+        if panel.bare { [2.0; 3] } else { [20.0 + panel.y.label_width(), 11.0, 30.0] };
     let frame = Frame {
         panel,
-        left: beside * PT,
-        right: f64::from(across) - if panel.bare { 2.0 } else { 11.0 } * PT,
+        left: left * PT,
+        right: f64::from(across) - right * PT,
         top: 20.0 * PT,
-        bottom: f64::from(down) - if panel.bare { 2.0 } else { 30.0 } * PT,
+        bottom: f64::from(down) - bottom * PT,
     };
     for item in &panel.items {
         if let Item::Shade { from, to } = *item {
@@ -173,6 +154,7 @@ fn draw_labels(frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
     let at = |point: &[f64; 2]| real(frame.at(*point));
     let mut labels = Labels::new([frame.left, frame.top], [frame.right, frame.bottom], 1.0 / PT);
     let marker = [6.0; 2];
+    let mut all = Vec::new();
     for item in &frame.panel.items {
         match item {
             Item::Line { points, .. } => {
@@ -181,10 +163,9 @@ fn draw_labels(frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
                 }
             }
             Item::Marks { points, .. } => {
-                points
-                    .iter()
-                    .filter(|point| frame.holds(**point))
-                    .for_each(|p| labels.keep_off(at(p), marker));
+                for point in points.iter().filter(|point| frame.holds(**point)) {
+                    labels.keep_off(at(point), marker);
+                }
             }
             Item::ErrorBars { points, .. } => {
                 for &[x, y, low, high] in points.iter().filter(|[x, y, ..]| frame.holds([*x, *y])) {
@@ -192,43 +173,32 @@ fn draw_labels(frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
                     labels.avoid(&[at(&[x, low]), at(&[x, high])]);
                 }
             }
-            Item::Key { at: key, .. } => labels.keep_off(at(key), marker),
             Item::Arrow { from, to, .. } => labels.avoid(&[at(from), at(to)]),
             Item::Text { at, side, text, .. } if frame.is_near(*at) => {
                 let (start, horizontal, vertical) = stands(frame.at(*at), *side);
                 let ([x, y], [across, up]) = (real(start), size(text));
-                let x = x + match horizontal {
+                let aside = match horizontal {
                     HPos::Left => 0.5,
                     HPos::Center => 0.0,
                     HPos::Right => -0.5,
-                } * across
-                    * PT;
-                let y = y + match vertical {
+                };
+                let below = match vertical {
                     VPos::Top => 0.5,
                     VPos::Center => 0.0,
                     VPos::Bottom => -0.5,
-                } * up
-                    * PT;
-                labels.keep_off([x, y], [across, up]);
+                };
+                labels.keep_off([x + aside * across * PT, y + below * up * PT], [across, up]);
             }
             Item::Shade { from, to } => {
-                let ends = [frame.panel.y.low, frame.panel.y.high];
-                [from, to].into_iter().for_each(|x| labels.avoid(&ends.map(|y| at(&[*x, y]))));
+                for x in [*from, *to] {
+                    labels.avoid(&[frame.panel.y.low, frame.panel.y.high].map(|y| at(&[x, y])));
+                }
             }
-            // what fills an area may lie under a label
-            Item::Band { .. } | Item::Bars { .. } => {}
-            Item::Text { .. } | Item::Label { .. } => {}
+            Item::Label { ink, beside, text } => all.push((ink, beside, text)),
+            // what fills an area may lie under a label, and what belongs far outside is not drawn
+            Item::Band { .. } | Item::Bars { .. } | Item::Text { .. } => {}
         }
     }
-    let mut all: Vec<_> = frame
-        .panel
-        .items
-        .iter()
-        .filter_map(|item| match item {
-            Item::Label { ink, beside, text } => Some((ink, beside, text)),
-            _ => None,
-        })
-        .collect();
     // those with the fewest places to choose from first
     all.sort_by_key(|(_, beside, _)| beside.len());
     for (ink, beside, text) in all {
@@ -237,11 +207,18 @@ fn draw_labels(frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
         let last = 0.5 * (text.lines().count() as f64 - 1.0);
         for (row, line) in text.lines().enumerate() {
             let middle = (x.round() as i32, (y + (row as f64 - last) * LINE * PT).round() as i32);
-            let style = font(8.0, &dark(*ink), HPos::Center, VPos::Center);
-            area.draw(&Text::new(line.to_owned(), middle, style))?;
+            write(line, middle, font(8.0, &dark(*ink), HPos::Center, VPos::Center), area)?;
         }
     }
     Ok(())
+}
+
+fn write(text: &str, at: (i32, i32), style: TextStyle<'_>, area: &Area<'_>) -> Drawn {
+    area.draw(&Text::new(text, at, style))
+}
+
+fn path(points: Vec<(i32, i32)>, style: impl Into<ShapeStyle>, area: &Area<'_>) -> Drawn {
+    area.draw(&PathElement::new(points, style))
 }
 
 fn draw_axes(frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
@@ -249,98 +226,75 @@ fn draw_axes(frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
     let thin = INK.stroke_width((0.5 * PT) as u32);
     let tick = 3.0 * PT;
     let corner = |x: f64, y: f64| (x.round() as i32, y.round() as i32);
-    let above = corner(frame.left, 4.0 * PT);
-    area.draw(&Text::new(heading.clone(), above, bold(9.0, &INK)))?;
+    let mut bold = font(9.0, &INK, HPos::Left, VPos::Top);
+    bold.font = bold.font.style(FontStyle::Bold);
+    write(heading, corner(frame.left, 4.0 * PT), bold, area)?;
     if frame.panel.bare {
         return Ok(());
     }
-    area.draw(&PathElement::new(
-        vec![
-            corner(frame.left, frame.top),
-            corner(frame.left, frame.bottom),
-            corner(frame.right, frame.bottom),
-        ],
-        thin,
-    ))?;
+    let [top, foot] = [frame.top, frame.bottom].map(|y| corner(frame.left, y));
+    path(vec![top, foot, corner(frame.right, frame.bottom)], thin, area)?;
     let [across, up] = [frame.right - frame.left, frame.bottom - frame.top].map(|length| length / PT);
     for (at, label) in x.legible(across, |label| width(label) + 5.0) {
         let (column, row) = frame.at([at, y.low]);
-        area.draw(&PathElement::new(vec![(column, row), (column, row + tick as i32)], thin))?;
-        let below = row + (1.6 * tick) as i32;
-        area.draw(&Text::new(label.to_string(), (column, below), font(8.0, &INK, HPos::Center, VPos::Top)))?;
+        path(vec![(column, row), (column, row + tick as i32)], thin, area)?;
+        let below = (column, row + (1.6 * tick) as i32);
+        write(label, below, font(8.0, &INK, HPos::Center, VPos::Top), area)?;
     }
     for (at, label) in y.legible(up, |_| 10.0) {
         let (column, row) = frame.at([x.low, at]);
-        area.draw(&PathElement::new(vec![(column - tick as i32, row), (column, row)], thin))?;
-        let beside = column - (1.7 * tick) as i32;
-        area.draw(&Text::new(label.to_string(), (beside, row), font(8.0, &INK, HPos::Right, VPos::Center)))?;
+        path(vec![(column - tick as i32, row), (column, row)], thin, area)?;
+        let beside = (column - (1.7 * tick) as i32, row);
+        write(label, beside, font(8.0, &INK, HPos::Right, VPos::Center), area)?;
     }
     let middle = corner(0.5 * (frame.left + frame.right), frame.bottom + 17.0 * PT);
-    area.draw(&Text::new(x.name.clone(), middle, font(8.5, &INK, HPos::Center, VPos::Top)))?;
+    let name = font(8.5, &INK, HPos::Center, VPos::Top);
+    write(&x.name, middle, name.clone(), area)?;
     let beside = corner(1.0 * PT, 0.5 * (frame.top + frame.bottom));
-    let upright = font(8.5, &INK, HPos::Center, VPos::Top).transform(FontTransform::Rotate270);
-    area.draw(&Text::new(y.name.clone(), beside, upright))
+    write(&y.name, beside, name.transform(FontTransform::Rotate270), area)
 }
 
 fn draw_item(item: &Item, frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
+    let Axis { low, high, .. } = frame.panel.y;
+    let clamp = |y: f64| y.clamp(low, high);
     match item {
         Item::Line { ink, points, .. } => {
-            for run in frame.clip(points) {
-                area.draw(&PathElement::new(run, stroke(*ink)))?;
-            }
+            frame.clip(points).into_iter().try_for_each(|run| path(run, stroke(*ink), area))
         }
         Item::Band { ink, points, .. } => {
-            let clamp = |y: f64| y.clamp(frame.panel.y.low, frame.panel.y.high);
-            let inside = points.iter().filter(|[x, ..]| frame.holds([*x, frame.panel.y.low]));
-            let (mut low, mut high) = (Vec::new(), Vec::new());
-            for &[x, from, to] in inside {
-                low.push(frame.at([x, clamp(from)]));
-                high.push(frame.at([x, clamp(to)]));
-            }
-            high.reverse();
-            low.append(&mut high);
-            area.draw(&Polygon::new(low, colour(*ink).mix(0.25)))?;
+            let inside: Vec<_> = points.iter().filter(|[x, ..]| frame.panel.x.holds(*x)).collect();
+            let lows = inside.iter().map(|[x, low, _]| frame.at([*x, clamp(*low)]));
+            let highs = inside.iter().rev().map(|[x, _, high]| frame.at([*x, clamp(*high)]));
+            area.draw(&Polygon::new(lows.chain(highs).collect::<Vec<_>>(), colour(*ink).mix(0.25)))
         }
         Item::Marks { ink, marker, points, .. } => {
-            for &point in points.iter().filter(|&&point| frame.holds(point)) {
-                draw_marker(frame.at(point), *ink, *marker, area)?;
-            }
+            let mut inside = points.iter().filter(|point| frame.holds(**point));
+            inside.try_for_each(|point| draw_marker(frame.at(*point), *ink, *marker, area))
         }
         Item::ErrorBars { ink, marker, points, .. } => {
-            for &[x, y, low, high] in points.iter().filter(|[x, y, ..]| frame.holds([*x, *y])) {
-                for run in frame.clip(&[[x, low], [x, high]]) {
-                    area.draw(&PathElement::new(run, colour(*ink).stroke_width((0.8 * PT) as u32)))?;
-                }
-                draw_marker(frame.at([x, y]), *ink, *marker, area)?;
-            }
+            let bar = colour(*ink).stroke_width((0.8 * PT) as u32);
+            let mut inside = points.iter().filter(|[x, y, ..]| frame.holds([*x, *y]));
+            inside.try_for_each(|&[x, y, low, high]| {
+                let runs = frame.clip(&[[x, low], [x, high]]);
+                runs.into_iter().try_for_each(|run| path(run, bar, area))?;
+                draw_marker(frame.at([x, y]), *ink, *marker, area)
+            })
         }
-        Item::Bars { ink, width, points, .. } => {
-            for &[x, y] in points {
-                let corners = [
-                    frame.at([x - 0.5 * width, frame.panel.y.low]),
-                    frame.at([x + 0.5 * width, y.clamp(frame.panel.y.low, frame.panel.y.high)]),
-                ];
-                area.draw(&Rectangle::new(corners, colour(*ink).mix(0.45).filled()))?;
-            }
-        }
-        Item::Key { ink, marker, at } if frame.is_near(*at) => {
-            draw_marker(frame.at(*at), *ink, *marker, area)?;
-        }
+        Item::Bars { ink, width, points, .. } => points.iter().try_for_each(|&[x, y]| {
+            let [from, to] = [x - 0.5 * width, x + 0.5 * width];
+            let corners = [frame.at([from, low]), frame.at([to, clamp(y)])];
+            area.draw(&Rectangle::new(corners, colour(*ink).mix(0.45).filled()))
+        }),
         Item::Arrow { ink, from, to } if frame.is_near(*from) && frame.is_near(*to) => {
-            draw_arrow(frame.at(*from), frame.at(*to), *ink, area)?;
+            draw_arrow(frame.at(*from), frame.at(*to), *ink, area)
         }
         Item::Text { ink, at, side, text } if frame.is_near(*at) => {
             let (at, horizontal, vertical) = stands(frame.at(*at), *side);
-            area.draw(&Text::new(text.clone(), at, font(8.0, &dark(*ink), horizontal, vertical)))?;
+            write(text, at, font(8.0, &dark(*ink), horizontal, vertical), area)
         }
         // a shade lies under the axes, labels above all else; and what belongs far outside is not drawn
-        Item::Shade { .. }
-        | Item::Label { .. }
-        | Item::Key { .. }
-        | Item::Arrow { .. }
-        | Item::Text { .. } => {}
+        Item::Shade { .. } | Item::Label { .. } | Item::Arrow { .. } | Item::Text { .. } => Ok(()),
     }
-    Ok(())
 }
 
 /// Where a text on this side of a point begins, ends or has its middle.
@@ -358,23 +312,20 @@ fn stands((x, y): (i32, i32), side: Side) -> ((i32, i32), HPos, VPos) {
 
 fn draw_marker((x, y): (i32, i32), ink: Ink, marker: Marker, area: &Area<'_>) -> Drawn {
     let colour = colour(ink);
-    let radius = (2.2 * PT) as i32;
+    let r = (2.2 * PT) as i32;
     let line = colour.stroke_width((0.9 * PT) as u32);
     match marker {
-        Marker::Dot => area.draw(&Circle::new((x, y), radius / 2, colour.filled())),
-        Marker::Disc => area.draw(&Circle::new((x, y), radius, colour.filled())),
-        Marker::Ring => area.draw(&Circle::new((x, y), radius, line)),
-        Marker::Square => {
-            area.draw(&Rectangle::new([(x - radius, y - radius), (x + radius, y + radius)], colour.filled()))
-        }
+        Marker::Dot => area.draw(&Circle::new((x, y), r / 2, colour.filled())),
+        Marker::Disc => area.draw(&Circle::new((x, y), r, colour.filled())),
+        Marker::Ring => area.draw(&Circle::new((x, y), r, line)),
+        Marker::Square => area.draw(&Rectangle::new([(x - r, y - r), (x + r, y + r)], colour.filled())),
         Marker::Triangle => {
-            let corners =
-                vec![(x, y - radius - radius / 3), (x + radius, y + radius), (x - radius, y + radius)];
+            let corners = vec![(x, y - r - r / 3), (x + r, y + r), (x - r, y + r)];
             area.draw(&Polygon::new(corners, colour))
         }
         Marker::Cross => {
-            area.draw(&PathElement::new(vec![(x - radius, y - radius), (x + radius, y + radius)], line))?;
-            area.draw(&PathElement::new(vec![(x - radius, y + radius), (x + radius, y - radius)], line))
+            path(vec![(x - r, y - r), (x + r, y + r)], line, area)?;
+            path(vec![(x - r, y + r), (x + r, y - r)], line, area)
         }
     }
 }
@@ -388,7 +339,7 @@ fn draw_arrow(from: (i32, i32), to: (i32, i32), ink: Ink, area: &Area<'_>) -> Dr
         let y = f64::from(to.1) - back * uy + aside * ux;
         (x.round() as i32, y.round() as i32)
     };
-    area.draw(&PathElement::new(vec![from, corner(4.0 * PT, 0.0)], stroke(ink)))?;
+    path(vec![from, corner(4.0 * PT, 0.0)], stroke(ink), area)?;
     let head = vec![to, corner(6.0 * PT, 2.4 * PT), corner(6.0 * PT, -2.4 * PT)];
     area.draw(&Polygon::new(head, colour(ink)))
 }
@@ -429,63 +380,6 @@ fn font(points: f64, colour: &impl Color, horizontal: HPos, vertical: VPos) -> T
     FontDesc::new(FontFamily::SansSerif, size, FontStyle::Normal)
         .color(colour)
         .pos(Pos::new(horizontal, vertical))
-}
-
-fn bold(points: f64, colour: &RGBColor) -> TextStyle<'static> {
-    let size = points * PT * 1.24;
-    FontDesc::new(FontFamily::SansSerif, size, FontStyle::Bold)
-        .color(colour)
-        .pos(Pos::new(HPos::Left, VPos::Top))
-}
-
-/// Adds the size in mm, title, description and dash patterns, and a white outline around texts so that lines
-/// do not touch them.
-fn finish(plot: &Plot, name: &str, svg: &str) -> String {
-    let size = [plot.width.millimetres(), plot.height_mm];
-    let body = svg.split_once('>').map_or("", |(_, body)| body);
-    let body = body.strip_suffix("</svg>\n").unwrap_or(body);
-    let mut body = body
-        .replace(" opacity=\"1\"", "")
-        .replace(" \"/>", "\"/>")
-        .replace("font-family=\"sans-serif\"", FONTS)
-        .replace("<text ", &format!("<text{EDGE} "));
-    for (opacity, pattern) in DASHES {
-        body = body.replace(&format!("opacity=\"{opacity}\""), &format!("stroke-dasharray=\"{pattern}\""));
-    }
-    let lattice = size.map(|size| (size * MM).trunc());
-    document(name, size, lattice, [&plot.title, &plot.description], &body)
-}
-
-/// A picture of this size in mm on white, `[width, height]` of its own units, with title and description.
-pub(super) fn document(
-    name: &str,
-    [width, height]: [f64; 2],
-    [across, down]: [f64; 2],
-    [title, description]: [&str; 2],
-    body: &str,
-) -> String {
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 \
-         {across} {down}\" stroke-linejoin=\"round\" role=\"img\" aria-labelledby=\"{name}-title \
-         {name}-desc\">\n<title id=\"{name}-title\">{}</title>\n<desc id=\"{name}-desc\">{}</desc>\n<rect \
-         width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>{body}</svg>\n",
-        escape(title),
-        escape(description),
-    )
-}
-
-/// A line of a title about x, on the line at y, in type of `size`.
-pub(super) fn title_line(x: f64, y: f64, size: u8, text: &str) -> String {
-    let RGBColor(r, g, b) = INK;
-    format!(
-        "\n<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\" {FONTS} font-size=\"{size}\" \
-         fill=\"#{r:02X}{g:02X}{b:02X}\">{}</text>",
-        escape(text)
-    )
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]

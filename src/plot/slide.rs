@@ -1,7 +1,7 @@
 //! A figure on a slide: as it is, as large as fits below its title.
 
 use super::labels::width;
-use super::{Figure, render};
+use super::{Figure, document};
 
 /// 13.33 × 7.5 inches in CSS pixels.
 const SIZE: [f64; 2] = [1280.0, 720.0];
@@ -17,7 +17,7 @@ pub(super) fn svg(figure: &Figure, name: &str) -> String {
     let line = 1.25 * f64::from(size);
     let mut body = String::new();
     for (row, text) in lines.iter().enumerate() {
-        body += &render::title_line(0.5 * SIZE[0], 0.5 * MARGIN + (row as f64 + 0.8) * line, size, text);
+        body += &document::title_line(0.5 * SIZE[0], 0.5 * MARGIN + (row as f64 + 0.8) * line, size, text);
     }
     let top = 0.75 * MARGIN + line * lines.len() as f64;
     let (root, drawn) = figure.svg.split_once("</desc>\n").unwrap_or_default();
@@ -30,7 +30,7 @@ pub(super) fn svg(figure: &Figure, name: &str) -> String {
         view.map_or("", |(view, _)| view),
     );
     let millimetres = SIZE.map(|pixels| (pixels * 254.0 / 96.0).round() / 10.0);
-    render::document(name, millimetres, SIZE, [&figure.title, &figure.description], &body)
+    document::document(name, millimetres, SIZE, [&figure.title, &figure.description], &body)
 }
 
 /// Lines no wider than `most`, broken at spaces, in type of this size.

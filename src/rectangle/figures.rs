@@ -110,20 +110,26 @@ pub fn sampling_errors(rectangle: Rectangle, seed: u64) -> Result<Figure> {
     let mut left = panel("Independent pairs", &test_set);
     guide(&mut left, &test_set);
     let right = panel("e^(−x²−y²), points placed four ways", &ways);
-    let ([a, b], [c, d]) =
-        (rectangle.x_range().map(|end| typeset(end, 12)), rectangle.y_range().map(|end| typeset(end, 12)));
+    let over = product(&rectangle);
     let title =
         "Errors against evaluations: four times the pairs halve the error, better placed points do more";
-    Plot::of("2_1_rmse", 92.0, vec![left, right])
-        .titled(title, format!(
-            "Two panels on logarithmic axes, for [{a}, {b}] × [{c}, {d}]. Left: the root-mean-square error \
+    Plot::of("2_1_rmse", 92.0, vec![left, right]).draw(
+        title,
+        format!(
+            "Two panels on logarithmic axes, for {over}. Left: the root-mean-square error \
              of n independent pairs for each function of the test set, measured over {REPEATS} estimates \
              (marks), on the exact lines of slope −1/2; where the variance is infinite, as for 1/√(x² + y²) \
              about the origin, the marks follow no such line. Right: the Gaussian by independent pairs \
              (slope −1/2), all pairs (−1/4 in evaluations), jittered points (−1) and scrambled Sobol points \
              (nearly −3/2). Seed {seed}."
-        ))
-        .draw()
+        ),
+    )
+}
+
+/// “[a, b] × [c, d]”
+fn product(rectangle: &Rectangle) -> String {
+    let ends = [rectangle.x_range(), rectangle.y_range()];
+    ends.map(|ends| format!("[{}]", ends.map(|end| typeset(end, 12)).join(", "))).join(" × ")
 }
 
 /// ⟨Fₙ⟩ = A/n Σ f(Xᵢ, Yᵢ) as one draw.
@@ -162,7 +168,12 @@ fn panel(heading: &str, curves: &[Curve]) -> Panel {
     for (curve, middle) in by_height.iter().zip(apart(&wanted)) {
         let end = [16_384.0, curve.end()];
         let [_, y] = panel.spot(0.0, middle);
-        panel.line("name", Ink::Grey, [end, [LAST_X, y]]).key(curve.ink, curve.marker, [1.2 * LAST_X, y]);
+        panel.line("name", Ink::Grey, [end, [LAST_X, y]]).marks(
+            "",
+            curve.ink,
+            curve.marker,
+            [[1.2 * LAST_X, y]],
+        );
         let lines = curve.label.lines().count() as f64;
         for (line, text) in curve.label.lines().enumerate() {
             let [_, y] = panel.spot(0.0, middle + LINE * (0.5 * (lines - 1.0) - line as f64));
@@ -247,17 +258,17 @@ pub fn running_means(rectangle: Rectangle, seed: u64) -> Result<Figure> {
         }
         panels.push(panel);
     }
-    let ([a, b], [c, d]) =
-        (rectangle.x_range().map(|end| typeset(end, 12)), rectangle.y_range().map(|end| typeset(end, 12)));
+    let over = product(&rectangle);
     let title = "Three runs of the same estimator close in on the truth, as fast as their own error bars say";
-    Plot::of("2_1_running_mean", 62.0, panels)
-        .titled(title, format!(
-            "Three panels, one a seed: the mean of n independent draws of area × e^(−X²−Y²) over [{a}, {b}] \
-             × [{c}, {d}] against n from 10 to 100 000 on a logarithmic axis, in its 95 % interval, which \
-             narrows as 1/√n; a thin line at the truth, {}.",
+    Plot::of("2_1_running_mean", 62.0, panels).draw(
+        title,
+        format!(
+            "Three panels, one for each seed: the mean of n independent draws of area × e^(−X²−Y²) over \
+             {over} against n from 10 to 100 000 on a logarithmic axis, with its 95 % interval, which \
+             narrows as 1/√n; a thin line marks the truth, {}.",
             typeset(truth, 6)
-        ))
-        .draw()
+        ),
+    )
 }
 
 #[cfg(test)]

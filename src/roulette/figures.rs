@@ -22,18 +22,16 @@ pub fn bounces(p_rr: [f64; 2], draws: usize, seed: u64) -> Result<Figure> {
         let mean = roulette.bounces().mean();
         let mut counts = vec![0u32; last as usize + 1];
         let mut rng = Stream::new(seed, 0);
-        let mut count = |n: f64| {
-            if let Some(count) = counts.get_mut(n as usize) {
+        // paths that are too long are not simulated
+        let sampler: Box<dyn Estimator> = if mean < 1000.0 {
+            Box::new(roulette.bounces().by_simulation()?)
+        } else {
+            Box::new(roulette.bounces().by_inversion()?)
+        };
+        for _ in 0..draws {
+            if let Some(count) = counts.get_mut(sampler.draw(&mut rng) as usize) {
                 *count += 1;
             }
-        };
-        // paths that are too long are not simulated
-        if mean < 1000.0 {
-            let sampler = roulette.bounces().by_simulation()?;
-            (0..draws).for_each(|_| count(sampler.draw(&mut rng)));
-        } else {
-            let sampler = roulette.bounces().by_inversion()?;
-            (0..draws).for_each(|_| count(sampler.draw(&mut rng)));
         }
         let n = draws.max(1) as f64;
         let measured: Vec<[f64; 4]> = (0..=last)
@@ -45,9 +43,9 @@ pub fn bounces(p_rr: [f64; 2], draws: usize, seed: u64) -> Result<Figure> {
             })
             .collect();
         let exact: Vec<_> = (0..=last).map(|k| [k as f64, roulette.bounces().pmf(k)]).collect();
-        let heights = || exact.iter().copied().chain(measured.iter().map(|&[k, .., high]| [k, high]));
+        let heights = exact.iter().copied().chain(measured.iter().map(|&[k, .., high]| [k, high]));
         // the text is on the right, above all of what is there
-        let top = heights().map(|[k, high]| if k < 0.3 * last as f64 { 1.1 * high } else { 1.5 * high });
+        let top = heights.map(|[k, high]| if k < 0.3 * last as f64 { 1.1 * high } else { 1.5 * high });
         let top = top.fold(0.0, f64::max);
         let every = (last / 6).max(1) as usize;
         let ticks = (0..=last).step_by(every).map(|k| (k as f64, k.to_string()));
@@ -65,12 +63,13 @@ pub fn bounces(p_rr: [f64; 2], draws: usize, seed: u64) -> Result<Figure> {
         panels.push(panel);
     }
     let [a, b] = p_rr.map(|p| typeset(p, 12));
-    Plot::of("5_1_bounces", 62.0, panels)
-        .titled(format!("The number of bounces at p_rr = {a} and {b}"), format!(
+    Plot::of("5_1_bounces", 62.0, panels).draw(
+        format!("The number of bounces at p_rr = {a} and {b}"),
+        format!(
             "Two bar charts of P(N = k) = pᵏ(1 − p), for p = {a} and p = {b}, falling geometrically; points \
              with 95 % intervals are the shares of {draws} simulated rays (seed {seed})."
-        ))
-        .draw()
+        ),
+    )
 }
 
 /// 5.3: E\[N\] and its standard deviation against p_rr, with those of two p_rr marked.
@@ -108,13 +107,14 @@ pub fn mean_bounces(p_rr: [f64; 2], draws: u64, seed: u64) -> Result<Figure> {
         panel.label(Ink::Black, [p, mean], &format!("E[N] {} at {}", equals(mean, 3), typeset(p, 3)));
     }
     let [a, b] = p_rr.map(|p| typeset(p, 12));
-    Plot::of("5_3_mean_bounces", 62.0, vec![panel])
-        .titled("E[N] grows with p_rr, without bound", format!(
+    Plot::of("5_3_mean_bounces", 62.0, vec![panel]).draw(
+        "E[N] grows with p_rr, without bound",
+        format!(
             "E[N] = p/(1 − p) against p, rising from 0 slowly and then steeply towards p = 1, in a band of \
              one standard deviation √p/(1 − p) to both sides. Points: means of {draws} draws (seed {seed}); \
              those at {a} and {b} have their E[N] beside them."
-        ))
-        .draw()
+        ),
+    )
 }
 
 /// Figure for 5.3: variance, cost and their product against the continuation probability q. The range q ≤ ρ²,
@@ -168,19 +168,17 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
         let middle = panel.y.value(0.8);
         panel.label(Ink::Black, [0.5 * (low + edge), middle], "q ≤ ρ²:\ninfinite\nvariance");
     }
-    Plot::of("5_3_roulette_trade", 68.0, vec![panel])
-        .titled(
-            format!("What roulette costs and buys: the product is least at q* {}", equals(best, 3)),
-            format!(
-                "Variance, cost 1/(1 − q) and their product against q, logarithmic, for ρ = {albedo} and v = \
-                 {v}. The variance is infinite up to q = ρ² {}, shaded, and falls; the cost rises; the \
-                 product is least at q* {}. Marked: q = {} and q*.",
-                equals(edge, 4),
-                equals(best, 4),
-                typeset(q, 12)
-            ),
-        )
-        .draw()
+    Plot::of("5_3_roulette_trade", 68.0, vec![panel]).draw(
+        format!("Roulette: variance × cost is least at q* {}", equals(best, 3)),
+        format!(
+            "Variance, cost 1/(1 − q) and their product against q, logarithmic, for ρ = {albedo} and v = \
+             {v}. The variance is infinite up to q = ρ² {}, shaded, and falls from there; the cost rises; \
+             the product is least at q* {}. Marked: q = {} and q*.",
+            equals(edge, 4),
+            equals(best, 4),
+            typeset(q, 12)
+        ),
+    )
 }
 
 /// Figure for 5.3: RMSE against the number of vertices, for roulette and for paths truncated after k ≤
@@ -261,12 +259,13 @@ pub fn truncation(model: &LightModel, q: f64, max_k: u64, replicates: u64, seed:
             panel.named("● roulette: infinite variance");
         }
     }
-    Plot::of("5_3_truncation", 68.0, vec![panel])
-        .titled("Truncated paths stop improving; roulette overtakes them", format!(
+    Plot::of("5_3_truncation", 68.0, vec![panel]).draw(
+        "Truncated paths stop improving; roulette overtakes them",
+        format!(
             "Root mean square error against the number of vertices C, both logarithmic, for ρ = {albedo}, v \
              = {v}. Roulette with q = {kept} falls as 1/√C. Paths cut after k ≤ {short} and k ≤ {long} level \
              off at their bias; the crossings are marked. Points: {replicates} runs each, seeds from \
              {seed}."
-        ))
-        .draw()
+        ),
+    )
 }

@@ -1,12 +1,12 @@
 //! The result of a comparison, and the ranking of its rivals.
 
 use super::REAL;
-use super::measured::{Crossing, Measured, Nature};
+use super::measured::{Measured, Nature};
 
 /// The result of a comparison.
 ///
-/// `{}` formats it as a table for people; [`csv`](Self::csv) and serde (for example as JSON) give the same
-/// for programs, and `trade::figures::comparison` draws it.
+/// `{}` formats it as a table for people; [`csv`](Self::csv) gives the same for programs, and
+/// `trade::figures::comparison` draws it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     /// The seed of all draws.
@@ -93,17 +93,34 @@ impl Comparison {
         })
     }
 
-    /// When the most efficient unbiased rival overtakes a biased one; None for a rival that is not biased.
-    pub fn crossing(&self, rival: &Measured) -> Option<Crossing> {
+    /// When the most efficient unbiased rival overtakes a biased one, after T = (σ_r² t_r − σ² t)/β² seconds;
+    /// None for a rival that is not biased.
+    pub(super) fn crossing(&self, rival: &Measured) -> Option<Crossing> {
         let ranking = self.ranking();
-        let best = ranking.iter().find(|place| place.rival.nature == Nature::Unbiased)?;
-        (rival.nature == Nature::Biased).then(|| rival.overtaken_at(best.rival))
+        let best = ranking.iter().map(|place| place.rival).find(|best| best.nature == Nature::Unbiased)?;
+        let lead = best.variance() * best.seconds - rival.variance() * rival.seconds;
+        (rival.nature == Nature::Biased).then(|| {
+            if lead <= 0.0 {
+                Crossing::FromTheStart
+            } else if rival.bias_seen() {
+                let seconds = lead / rival.bias().powi(2);
+                Crossing::At { seconds, rmse: best.rmse(seconds) }
+            } else {
+                Crossing::Unknown
+            }
+        })
     }
+}
 
-    /// What errors are relative to: |truth|, or 1 if that is 0.
-    pub fn scale(&self) -> f64 {
-        if self.truth == 0.0 { 1.0 } else { self.truth.abs() }
-    }
+/// When an unbiased rival becomes better than a biased one.
+pub(super) enum Crossing {
+    /// It is as good or better from the start.
+    FromTheStart,
+    /// It is worse at first and better from here on, where both have this root mean square error in the
+    /// truth's unit.
+    At { seconds: f64, rmse: f64 },
+    /// That depends on a bias that is not seen.
+    Unknown,
 }
 
 /// Whether `a` is more efficient than `b` by more than the noise.

@@ -2,27 +2,15 @@
 
 use crate::error::Result;
 use crate::numbers::two_digits;
-use crate::plot::{Axis, Edition, Figure, Ink, Marker, Panel, Plot, Side, Width};
+use crate::plot::Marker::{self, Cross, Disc, Ring, Square, Triangle};
+use crate::plot::{Axis, Figure, Ink, Panel, Plot, Side};
 use crate::trade::{Comparison, Measured, Nature};
 
-/// For each rival an ink, which implies a dash pattern, and a marker: all differ even in grey.
-const STYLES: [(Ink, Marker); 16] = [
-    (Ink::Blue, Marker::Disc),
-    (Ink::Vermilion, Marker::Square),
-    (Ink::Green, Marker::Triangle),
-    (Ink::Purple, Marker::Cross),
-    (Ink::Blue, Marker::Ring),
-    (Ink::Vermilion, Marker::Cross),
-    (Ink::Green, Marker::Square),
-    (Ink::Purple, Marker::Triangle),
-    (Ink::Blue, Marker::Square),
-    (Ink::Vermilion, Marker::Triangle),
-    (Ink::Green, Marker::Disc),
-    (Ink::Purple, Marker::Ring),
-    (Ink::Blue, Marker::Triangle),
-    (Ink::Vermilion, Marker::Disc),
-    (Ink::Green, Marker::Cross),
-    (Ink::Purple, Marker::Square),
+/// For each rival an ink, in turn, which implies a dash pattern, and a marker: all differ even in grey.
+const INKS: [Ink; 4] = [Ink::Blue, Ink::Vermilion, Ink::Green, Ink::Purple];
+const MARKERS: [Marker; 16] = [
+    Disc, Square, Triangle, Cross, Ring, Cross, Square, Triangle, Square, Triangle, Disc, Ring, Triangle,
+    Disc, Cross, Square,
 ];
 
 /// The most letters of a name that fit beside a panel.
@@ -60,7 +48,8 @@ type Drawn<'a> = (&'a Measured, (Ink, Marker));
 /// If it cannot be drawn.
 pub fn comparison(name: &'static str, title: &str, comparison: &Comparison) -> Result<Figure> {
     let ranked: Vec<&Measured> = comparison.remarked().into_iter().map(|(rival, ..)| rival).collect();
-    let drawn: Vec<Drawn<'_>> = ranked.iter().copied().zip(STYLES).collect();
+    let styles = INKS.into_iter().cycle().zip(MARKERS);
+    let drawn: Vec<Drawn<'_>> = ranked.iter().copied().zip(styles).collect();
     let lines: Vec<Drawn<'_>> = drawn
         .iter()
         .copied()
@@ -82,42 +71,34 @@ pub fn comparison(name: &'static str, title: &str, comparison: &Comparison) -> R
         time,
         efficiencies(&drawn, comparison),
     ];
-    let listed =
-        |rivals: &[&Measured]| rivals.iter().map(|rival| rival.name.as_str()).collect::<Vec<_>>().join(", ");
-    let names = listed(&drawn.iter().map(|(rival, _)| *rival).collect::<Vec<_>>());
-    let left_out = match ranked.get(STYLES.len()..) {
-        Some(rest) if !rest.is_empty() => {
-            format!(" Not drawn, as there are only sixteen kinds of lines: {}.", listed(rest))
-        }
-        _ => String::new(),
+    let names: Vec<&str> = ranked.iter().map(|rival| rival.name.as_str()).collect();
+    let (names, left_out) = names.split_at(drawn.len());
+    let names = names.join(", ");
+    let left_out = if left_out.is_empty() {
+        String::new()
+    } else {
+        format!(" Not drawn, as there are only sixteen kinds of lines: {}.", left_out.join(", "))
     };
-    Plot {
-        name,
-        title: title.into(),
-        description: format!(
+    Plot { columns: 2, ..Plot::of(name, 126.0, panels) }.draw(
+        title,
+        format!(
             "Root mean square error{} against draws, counted work and seconds, all axes logarithmic, and the \
-             efficiency as a part of the best one's, for {names}.{left_out} The lines follow from the \
-             variance, bias, work and time of a draw as they were measured (seed {}); a line ends where a \
-             bias that is not seen may take over. An arrow spans the factor in time between the slowest and \
-             the fastest without bias at the same error, if the difference is more than three std errors, \
-             and at least a factor of 2. What has no variance, or an infinite one, has no line.",
+         efficiency as a part of the best one's, for {names}.{left_out} The lines follow from the variance, \
+         bias, work and time of a draw as they were measured (seed {}); a line ends where a bias too small \
+         to be seen may be larger than the error. An arrow spans the factor in time between the slowest and \
+         the fastest without bias at the same error, if the difference is more than three std errors, and at \
+         least a factor of 2. Estimators without variance, or of infinite variance, have no line.",
             if comparison.truth == 0.0 { "" } else { " relative to the truth" },
             comparison.seed
         ),
-        edition: Edition::Solution,
-        width: Width::Page,
-        height_mm: 126.0,
-        columns: 2,
-        panels,
-    }
-    .draw()
+    )
 }
 
 /// The error after `spent` units of `cost`, relative to the truth; NaN where a bias that is not seen may be
 /// as large.
 fn error(rival: &Measured, cost: &dyn Fn(&Measured) -> f64, spent: f64) -> f64 {
     let error = rival.rmse(rival.seconds * spent / cost(rival));
-    let known = if rival.bias_seen() { 0.0 } else { rival.bias().abs() + 3.0 * rival.bias_error() };
+    let known = if rival.bias_seen() { 0.0 } else { rival.bias_range()[1] };
     if error > known && error.is_finite() { error / rival.scale() } else { f64::NAN }
 }
 
@@ -194,31 +175,30 @@ fn efficiencies(drawn: &[Drawn<'_>], comparison: &Comparison) -> Panel {
     let least = parts.iter().fold(0.3 * most, |least: f64, part| least.min(*part));
     // so that even the shortest line shows its dash pattern
     let low = most * (least / most).powf(1.5);
-    // in points: the names take part of 233, and the text beside the longest line 66
-    let widest =
-        drawn.iter().map(|(rival, _)| shortened(&rival.name).chars().count()).max().unwrap_or(0) as f64;
-    let width = 213.0 - 5.4 * widest.min(8.0) - 4.4 * (widest - 8.0).max(0.0);
-    let high = low * (most / low).powf(width / (width - 66.0));
     let row = |index: usize| (drawn.len() - index) as f64;
     let ticks = drawn.iter().enumerate().map(|(index, (rival, _))| (row(index), shortened(&rival.name)));
+    let y = Axis::linear("", 0.4, drawn.len() as f64 + 0.6).with_ticks(ticks);
+    // in points: the names take part of 213, and the text beside the longest line 66
+    let width = 213.0 - y.label_width();
+    let high = low * (most / low).powf(width / (width - 66.0));
     let x = Axis::log("efficiency/best", low, high);
     // at most three ticks, where the lines are
     let all: Vec<_> = x.ticks.iter().filter(|(at, _)| *at <= most).cloned().collect();
     let x = x.with_ticks(all.iter().rev().step_by(all.len().div_ceil(3).max(1)).cloned());
-    let y = Axis::linear("", 0.4, drawn.len() as f64 + 0.6).with_ticks(ticks);
     let mut panel = Panel::new("Efficiency", x, y);
     for (index, (rival, (ink, marker))) in drawn.iter().enumerate() {
         let y = row(index);
         match part(rival) {
             Some(part) => {
-                panel.line(&rival.name, *ink, [[low, y], [part, y]]);
-                panel.marks(&rival.name, *ink, *marker, [[part, y]]);
                 let mind = match (rival.nature, rival.doubt()) {
                     (Nature::Biased, _) => ", biased".into(),
                     (_, Some(doubt)) => format!(", {}", doubt.mark()),
                     _ => String::new(),
                 };
-                panel.text(Ink::Black, [part, y], Side::Right, &format!("{}{mind}", two_digits(part)));
+                panel
+                    .line(&rival.name, *ink, [[low, y], [part, y]])
+                    .marks(&rival.name, *ink, *marker, [[part, y]])
+                    .text(Ink::Black, [part, y], Side::Right, &format!("{}{mind}", two_digits(part)));
             }
             None => {
                 let why = rival.doubt().map_or("none", |doubt| doubt.mark());

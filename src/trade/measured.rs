@@ -1,15 +1,12 @@
 //! The measurements of one rival, and what follows from them.
 
-use serde::Serialize;
-
 use super::REAL;
 use super::batches::COUNT;
 use crate::doubt::Doubt;
 use crate::estimate::Estimate;
 
 /// What is known of an estimator in advance.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Nature {
     /// Its mean is the truth.
     Unbiased,
@@ -18,17 +15,6 @@ pub enum Nature {
     /// Its mean is the truth and its variance is infinite: its error bar is meaningless for any number of
     /// draws.
     InfiniteVariance,
-}
-
-impl Nature {
-    /// `unbiased`, `biased` or `infinite_variance`
-    pub(super) fn key(self) -> &'static str {
-        match self {
-            Self::Unbiased => "unbiased",
-            Self::Biased => "biased",
-            Self::InfiniteVariance => "infinite_variance",
-        }
-    }
 }
 
 /// When an error is reached.
@@ -50,24 +36,6 @@ impl Reach {
             Self::AtLeast(_) | Self::Never => None,
         }
     }
-}
-
-/// When one estimator becomes better than another.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Crossing {
-    /// It is as good or better from the start.
-    FromTheStart,
-    /// It is worse at first, and better from here on.
-    At {
-        /// After so many seconds.
-        seconds: f64,
-        /// Both have this root mean square error then, in the truth's unit.
-        rmse: f64,
-    },
-    /// It is worse, and stays so.
-    Never,
-    /// It depends on a bias that is not seen, or on the other one's bias.
-    Unknown,
 }
 
 /// The measurements of one rival. Variance, work and time are those of one draw, which may be a whole
@@ -108,7 +76,7 @@ pub struct Measured {
 
 impl Measured {
     /// Why its variance cannot be trusted, if so.
-    pub fn doubt(&self) -> Option<Doubt> {
+    pub(crate) fn doubt(&self) -> Option<Doubt> {
         match self.nature {
             Nature::InfiniteVariance => Some(Doubt::InfiniteVariance),
             _ if !self.varies() => Some(Doubt::NeverVaried),
@@ -163,13 +131,8 @@ impl Measured {
         bias > REAL * self.bias_error() && bias > 8.0 * f64::EPSILON * self.truth.abs()
     }
 
-    /// The bias if it is seen, else 0.
-    fn counted_bias(&self) -> f64 {
-        if self.bias_seen() { self.bias() } else { 0.0 }
-    }
-
     /// The smallest and the largest |bias| within three std errors.
-    fn bias_range(&self) -> [f64; 2] {
+    pub(super) fn bias_range(&self) -> [f64; 2] {
         let (bias, reach) = (self.bias().abs(), REAL * self.bias_error());
         let least = if self.bias_seen() { bias - reach } else { 0.0 };
         [least, bias + reach]
@@ -177,17 +140,17 @@ impl Measured {
 
     /// The efficiency 1/(σ² t), in 1/(unit² s), with the truth's unit; infinite if the draws do not vary, 0
     /// if the variance is infinite.
-    pub fn efficiency(&self) -> f64 {
+    pub(crate) fn efficiency(&self) -> f64 {
         if self.varies() { (self.variance() * self.seconds).recip() } else { f64::INFINITY }
     }
 
     /// Whether the draws differ by more than rounding: σ > 8 ε |mean|.
-    pub fn varies(&self) -> bool {
+    pub(crate) fn varies(&self) -> bool {
         self.variance().sqrt() > 8.0 * f64::EPSILON * self.estimate.mean().abs()
     }
 
     /// What errors are relative to: |truth|, or 1 if that is 0.
-    pub fn scale(&self) -> f64 {
+    pub(crate) fn scale(&self) -> f64 {
         if self.truth == 0.0 { 1.0 } else { self.truth.abs() }
     }
 
@@ -204,8 +167,13 @@ impl Measured {
         self.time_error().hypot(of_variance)
     }
 
+    /// The bias if it is seen, else 0.
+    fn counted_bias(&self) -> f64 {
+        if self.bias_seen() { self.bias() } else { 0.0 }
+    }
+
     /// The root mean square error √(β² + σ² t/T) after T `seconds` on one core, in the truth's unit.
-    pub fn rmse(&self, seconds: f64) -> f64 {
+    pub(crate) fn rmse(&self, seconds: f64) -> f64 {
         if self.nature == Nature::InfiniteVariance {
             return f64::INFINITY;
         }
@@ -225,27 +193,6 @@ impl Measured {
             Reach::After(with_bias(self.counted_bias().abs()))
         } else {
             Reach::AtLeast(with_bias(least))
-        }
-    }
-
-    /// When an unbiased `rival` overtakes this one: after T = (σ_r² t_r − σ² t)/β² seconds, if ever. For a
-    /// `rival` that was declared biased itself it is [`Unknown`](Crossing::Unknown).
-    pub fn overtaken_at(&self, rival: &Self) -> Crossing {
-        let infinite = |one: &Self| one.nature == Nature::InfiniteVariance;
-        let lead = rival.variance() * rival.seconds - self.variance() * self.seconds;
-        if infinite(rival) {
-            Crossing::Never
-        } else if rival.nature == Nature::Biased && self.nature != Nature::InfiniteVariance {
-            Crossing::Unknown
-        } else if infinite(self) || lead <= 0.0 {
-            Crossing::FromTheStart
-        } else if self.nature == Nature::Unbiased {
-            Crossing::Never
-        } else if self.bias_seen() {
-            let seconds = lead / self.bias().powi(2);
-            Crossing::At { seconds, rmse: rival.rmse(seconds) }
-        } else {
-            Crossing::Unknown
         }
     }
 }

@@ -6,8 +6,8 @@
 //! Handscomb 1964, section 5.1; *Physically Based Rendering*, 4th ed., section 2.2.)
 //!
 //! For jittered or Sobol points a draw is a whole replicate, with all of its work. A biased rival has a root
-//! mean square error √(β² + σ² t/T), which does not fall below its bias β: [`Measured::overtaken_at`] gives
-//! the time after which an unbiased one is better. The bias is measured, too, so it has an error bar: a bias
+//! mean square error √(β² + σ² t/T), which does not fall below its bias β: a remark in the table tells when
+//! the best unbiased one overtakes it. The bias is measured, too, so it has an error bar: a bias
 //! within three of its std errors is *not seen*, and counts as 0. An estimator declared to have infinite
 //! variance has no efficiency, and one whose variance comes mostly from a few draws is marked.
 
@@ -19,7 +19,7 @@ mod measured;
 mod shown;
 
 pub use comparison::{Comparison, Ranked};
-pub use measured::{Crossing, Measured, Nature, Reach};
+pub use measured::{Measured, Nature, Reach};
 
 use crate::error::{Result, require};
 use crate::estimator::Estimator;
@@ -160,7 +160,7 @@ impl Trade {
     ///     Rival::new("mirrored", mirrored),
     ///     Rival::new("halves", halves),
     /// ])?;
-    /// println!("{found}"); // a table with ranks and remarks; found.csv() and serde are for programs
+    /// println!("{found}"); // a table with ranks and remarks; found.csv() is for programs
     ///
     /// // the variance of √U is 1/18, that of the mean with its mirror image 1/36 + π/16 − 2/9 = 0.0019
     /// let [plain, mirrored, _] = &found.rivals[..] else { panic!("three rivals") };

@@ -1,17 +1,11 @@
-//! A comparison as a table for people, and as CSV and JSON for programs.
+//! A comparison as a table for people, and as CSV for programs.
 
 use std::fmt;
 
-use serde::ser::{SerializeMap, SerializeSeq, SerializeStruct};
-use serde::{Serialize, Serializer};
-
-use super::comparison::{Comparison, Ranked};
-use super::measured::{Crossing, Measured, Nature, Reach};
+use super::comparison::{Comparison, Crossing, Ranked};
+use super::measured::{Measured, Nature, Reach};
 use crate::doubt::Doubt;
-use crate::numbers::{duration, plus_minus, two_digits, unit};
-
-/// The errors for which a table gives the times.
-const ERRORS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
+use crate::numbers::{csv_field, duration, plus_minus, two_digits, unit};
 
 impl Comparison {
     /// An explanation of the table's columns.
@@ -27,28 +21,27 @@ impl Comparison {
 
     /// The names of the table's columns.
     pub fn columns(&self) -> Vec<&'static str> {
-        let (sigma, to) = if self.truth == 0.0 {
-            ("σ", ["to 10⁻² (absolute)", "to 10⁻³", "to 10⁻⁴", "to 10⁻⁵"])
+        let [sigma, to_2, to_3] = if self.truth == 0.0 {
+            ["σ", "to 10⁻² (absolute)", "to 10⁻³"]
         } else {
-            ("σ/truth", ["to 1 %", "to 0.1 %", "to 10⁻⁴", "to 10⁻⁵"])
+            ["σ/truth", "to 1 %", "to 0.1 %"]
         };
-        let mut columns = vec!["estimator", sigma, self.unit_of_work(), "time a draw", "rank", "efficiency"];
-        columns.extend(to);
-        columns.push("remark");
-        columns
+        let work = self.unit_of_work();
+        let measured = ["estimator", sigma, work, "time a draw", "rank", "efficiency"];
+        [&measured[..], &[to_2, to_3, "to 10⁻⁴", "to 10⁻⁵", "remark"]].concat()
     }
 
     /// The table's cells, one row per rival: the unbiased ones by rank, then the biased ones.
     pub fn rows(&self) -> Vec<Vec<String>> {
         let rows = self.remarked().into_iter().map(|(rival, place, remark)| {
             let sigma =
-                if rival.varies() { two_digits(rival.variance().sqrt() / self.scale()) } else { "0".into() };
+                if rival.varies() { two_digits(rival.variance().sqrt() / rival.scale()) } else { "0".into() };
             let (rank, efficiency) = place.map_or_else(Default::default, |place| {
                 (place.rank.to_string(), two_digits(place.of_the_best))
             });
             let mut row =
                 vec![rival.name.clone(), sigma, two_digits(self.work(rival)), time(rival), rank, efficiency];
-            row.extend(ERRORS.map(|error| rival.seconds_to(error).to_string()));
+            row.extend([1e-2, 1e-3, 1e-4, 1e-5].map(|error| rival.seconds_to(error).to_string()));
             row.push(remark);
             row
         });
@@ -112,17 +105,18 @@ impl Comparison {
                 said.push(format!("overtaken by the best after {}, at {at}", duration(seconds)));
             }
             Some(Crossing::FromTheStart) => said.push("behind the best from the start".into()),
-            Some(Crossing::Never | Crossing::Unknown) | None => {}
+            Some(Crossing::Unknown) | None => {}
         }
         said
     }
 
-    /// The comparison as CSV for other programs: the columns' names, then one line per rival.
+    /// The comparison as CSV for other programs: the columns' names, then one line per rival, in the order
+    /// given.
     ///
     /// Numbers have all digits, in the truth's unit and in seconds; `inf` means infinite or never reached; a
     /// cell is empty if the value is unknown or does not apply. `nature` is `unbiased`, `biased` or
     /// `infinite_variance`; `crossing`, when the best unbiased rival overtakes a biased one, is `at`,
-    /// `from_the_start`, `never` or `unknown`.
+    /// `from_the_start` or `unknown`.
     ///
     /// ```
     /// use unbiased::from_fn;
@@ -131,203 +125,113 @@ impl Comparison {
     /// let rival = Rival::new("U", from_fn(|rng| rng.uniform()));
     /// let found = Trade::new(1, 0.5)?.seconds_each(0.01)?.compare(&[rival])?;
     /// assert!(found.csv().starts_with("name,series,nature,draws,mean,"));
-    /// // serde gives the same columns
-    /// let json = serde_json::to_value(&found)?;
-    /// assert_eq!(json["rivals"][0]["name"], "U");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), unbiased::Error>(())
     /// ```
     pub fn csv(&self) -> String {
-        let mut csv = NAMES.join(",") + "\n";
-        for record in self.records() {
-            let cells: Vec<String> = record.iter().map(Cell::to_string).collect();
-            csv += &cells.join(",");
+        let mut csv = COLUMNS.map(|(name, _)| name).join(",") + "\n";
+        let places = self.ranking();
+        for rival in &self.rivals {
+            let place = places.iter().find(|place| std::ptr::eq(place.rival, rival));
+            let row = Row { rival, place, crossing: self.crossing(rival), slope: self.slope(rival) };
+            csv += &COLUMNS.map(|(_, cell)| cell(&row)).join(",");
             csv.push('\n');
         }
         csv
     }
-
-    /// The cells of CSV and JSON, one record per rival, in the order given.
-    fn records(&self) -> Vec<Record<'_>> {
-        let places = self.ranking();
-        let place = |rival: &Measured| places.iter().find(|place| std::ptr::eq(place.rival, rival));
-        self.rivals.iter().map(|rival| record(self, rival, place(rival))).collect()
-    }
 }
 
-/// The columns of CSV and JSON.
-const NAMES: [&str; 31] = [
-    "name",
-    "series",
-    "nature",
-    "draws",
-    "mean",
-    "std_error",
-    "truth",
-    "truth_error",
-    "bias",
-    "bias_error",
-    "bias_seen",
-    "variance",
-    "variance_error",
-    "heavy_tail",
-    "evaluations",
-    "random_numbers",
-    "seconds",
-    "seconds_low",
-    "seconds_high",
-    "efficiency",
-    "of_the_best",
-    "rank",
-    "set_apart",
-    "slope",
-    "seconds_to_1e-2",
-    "seconds_to_1e-3",
-    "seconds_to_1e-4",
-    "seconds_to_1e-5",
-    "crossing",
-    "crossing_seconds",
-    "crossing_error",
+/// What a line of the CSV tells.
+struct Row<'a> {
+    rival: &'a Measured,
+    place: Option<&'a Ranked<'a>>,
+    crossing: Option<Crossing>,
+    slope: Option<f64>,
+}
+
+/// A column of the CSV: its name, and its cell in a row.
+type Column = (&'static str, fn(&Row<'_>) -> String);
+
+const COLUMNS: [Column; 31] = [
+    ("name", |row| csv_field(&row.rival.name)),
+    ("series", |row| csv_field(row.rival.series.as_deref().unwrap_or_default())),
+    ("nature", |row| row.nature().into()),
+    ("draws", |row| row.rival.estimate.draws().to_string()),
+    ("mean", |row| number(row.rival.estimate.mean())),
+    ("std_error", |row| row.with_variance(row.rival.estimate.std_error())),
+    ("truth", |row| number(row.rival.truth)),
+    ("truth_error", |row| number(row.rival.truth_error)),
+    ("bias", |row| row.of_bias(number(row.rival.bias()))),
+    ("bias_error", |row| row.of_bias(number(row.rival.bias_error()))),
+    ("bias_seen", |row| row.of_bias(row.rival.bias_seen().to_string())),
+    ("variance", |row| number(row.rival.variance())),
+    ("variance_error", |row| row.with_variance(Some(row.rival.variance_error))),
+    ("heavy_tail", |row| row.rival.heavy_tail.to_string()),
+    ("evaluations", |row| number(row.rival.evaluations)),
+    ("random_numbers", |row| number(row.rival.random_numbers)),
+    ("seconds", |row| number(row.rival.seconds)),
+    ("seconds_low", |row| number(row.rival.seconds_range[0])),
+    ("seconds_high", |row| number(row.rival.seconds_range[1])),
+    ("efficiency", |row| number(row.rival.efficiency())),
+    ("of_the_best", |row| row.place.map_or(String::new(), |place| place.of_the_best.to_string())),
+    ("rank", |row| row.place.map_or(String::new(), |place| place.rank.to_string())),
+    ("set_apart", |row| row.place.map_or(String::new(), |place| place.set_apart.to_string())),
+    ("slope", |row| row.slope.map_or(String::new(), number)),
+    ("seconds_to_1e-2", |row| row.seconds_to(1e-2)),
+    ("seconds_to_1e-3", |row| row.seconds_to(1e-3)),
+    ("seconds_to_1e-4", |row| row.seconds_to(1e-4)),
+    ("seconds_to_1e-5", |row| row.seconds_to(1e-5)),
+    ("crossing", |row| row.crossing().0.into()),
+    ("crossing_seconds", |row| number(row.crossing().1)),
+    ("crossing_error", |row| number(row.crossing().2)),
 ];
 
-/// One cell per column.
-type Record<'a> = [Cell<'a>; 31];
-
-fn record<'a>(comparison: &Comparison, rival: &'a Measured, place: Option<&Ranked<'_>>) -> Record<'a> {
-    let finite = rival.nature != Nature::InfiniteVariance;
-    let biased = rival.nature == Nature::Biased;
-    let number = |value: f64| if value.is_nan() { Cell::Nothing } else { Cell::Number(value) };
-    // with an infinite variance the error bar is infinite, too
-    let with_variance = |value: f64| number(if finite { value } else { f64::INFINITY });
-    let of_bias = |cell: Cell<'a>| if biased { cell } else { Cell::Nothing };
-    let of_place = |cell: fn(&Ranked<'_>) -> Cell<'a>| place.map_or(Cell::Nothing, cell);
-    let reach = |error: f64| match rival.seconds_to(error) {
-        Reach::After(seconds) => number(seconds),
-        Reach::AtLeast(_) => Cell::Nothing,
-        Reach::Never => Cell::Number(f64::INFINITY),
-    };
-    let (crossing, [at, error]) = match comparison.crossing(rival) {
-        None => (Cell::Nothing, [Cell::Nothing, Cell::Nothing]),
-        Some(Crossing::At { seconds, rmse }) => (Cell::Text("at"), [number(seconds), number(rmse)]),
-        Some(Crossing::FromTheStart) => (Cell::Text("from_the_start"), [Cell::Nothing, Cell::Nothing]),
-        Some(Crossing::Never) => (Cell::Text("never"), [Cell::Nothing, Cell::Nothing]),
-        Some(Crossing::Unknown) => (Cell::Text("unknown"), [Cell::Nothing, Cell::Nothing]),
-    };
-    let [low, high] = rival.seconds_range;
-    let [to_2, to_3, to_4, to_5] = ERRORS.map(reach);
-    [
-        Cell::Text(&rival.name),
-        rival.series.as_deref().map_or(Cell::Nothing, Cell::Text),
-        Cell::Text(rival.nature.key()),
-        Cell::Count(rival.estimate.draws()),
-        number(rival.estimate.mean()),
-        with_variance(rival.estimate.std_error().unwrap_or(f64::NAN)),
-        number(rival.truth),
-        number(rival.truth_error),
-        of_bias(number(rival.bias())),
-        of_bias(number(rival.bias_error())),
-        of_bias(Cell::Flag(rival.bias_seen())),
-        number(rival.variance()),
-        with_variance(rival.variance_error),
-        Cell::Flag(rival.heavy_tail),
-        number(rival.evaluations),
-        number(rival.random_numbers),
-        number(rival.seconds),
-        number(low),
-        number(high),
-        number(rival.efficiency()),
-        of_place(|place| Cell::Number(place.of_the_best)),
-        of_place(|place| Cell::Count(place.rank as u64)),
-        of_place(|place| Cell::Flag(place.set_apart)),
-        comparison.slope(rival).map_or(Cell::Nothing, number),
-        to_2,
-        to_3,
-        to_4,
-        to_5,
-        crossing,
-        at,
-        error,
-    ]
+/// A number with all its digits, or nothing if it is not known.
+fn number(value: f64) -> String {
+    if value.is_nan() { String::new() } else { value.to_string() }
 }
 
-/// A value for programs.
-enum Cell<'a> {
-    Text(&'a str),
-    Count(u64),
-    Number(f64),
-    Flag(bool),
-    Nothing,
-}
-
-/// As a CSV field (RFC 4180).
-impl fmt::Display for Cell<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Text(text) if text.contains([',', '"', '\n', '\r']) => {
-                write!(f, "\"{}\"", text.replace('"', "\"\""))
-            }
-            Self::Text(text) => f.write_str(text),
-            Self::Count(count) => write!(f, "{count}"),
-            Self::Number(number) => write!(f, "{number}"),
-            Self::Flag(flag) => write!(f, "{flag}"),
-            Self::Nothing => Ok(()),
+impl Row<'_> {
+    fn nature(&self) -> &'static str {
+        match self.rival.nature {
+            Nature::Unbiased => "unbiased",
+            Nature::Biased => "biased",
+            Nature::InfiniteVariance => "infinite_variance",
         }
     }
-}
 
-impl Serialize for Cell<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Text(text) => serializer.serialize_str(text),
-            Self::Count(count) => serializer.serialize_u64(*count),
-            Self::Number(number) => serializer.serialize_f64(*number),
-            Self::Flag(flag) => serializer.serialize_bool(*flag),
-            Self::Nothing => serializer.serialize_none(),
+    /// With an infinite variance its error bars are infinite, too.
+    fn with_variance(&self, error: Option<f64>) -> String {
+        let infinite = self.rival.nature == Nature::InfiniteVariance;
+        number(if infinite { f64::INFINITY } else { error.unwrap_or(f64::NAN) })
+    }
+
+    fn of_bias(&self, cell: String) -> String {
+        if self.rival.nature == Nature::Biased { cell } else { String::new() }
+    }
+
+    fn seconds_to(&self, error: f64) -> String {
+        match self.rival.seconds_to(error) {
+            Reach::After(seconds) => number(seconds),
+            Reach::AtLeast(_) => String::new(),
+            Reach::Never => number(f64::INFINITY),
         }
     }
-}
 
-/// The fields are `seed`, `truth`, `truth_error` and `rivals`; each rival has the columns of
-/// [`Comparison::csv`]. In JSON, which has no infinity, infinite values are null, as are empty cells.
-impl Serialize for Comparison {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut fields = serializer.serialize_struct("Comparison", 4)?;
-        fields.serialize_field("seed", &self.seed)?;
-        fields.serialize_field("truth", &self.truth)?;
-        fields.serialize_field("truth_error", &self.truth_error)?;
-        fields.serialize_field("rivals", &Records(self.records()))?;
-        fields.end()
-    }
-}
-
-struct Records<'a>(Vec<Record<'a>>);
-
-impl Serialize for Records<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut list = serializer.serialize_seq(Some(self.0.len()))?;
-        for record in &self.0 {
-            list.serialize_element(&Fields(record))?;
+    fn crossing(&self) -> (&'static str, f64, f64) {
+        match self.crossing {
+            Some(Crossing::At { seconds, rmse }) => ("at", seconds, rmse),
+            Some(Crossing::FromTheStart) => ("from_the_start", f64::NAN, f64::NAN),
+            Some(Crossing::Unknown) => ("unknown", f64::NAN, f64::NAN),
+            None => ("", f64::NAN, f64::NAN),
         }
-        list.end()
-    }
-}
-
-struct Fields<'a>(&'a Record<'a>);
-
-impl Serialize for Fields<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        for (name, cell) in NAMES.iter().zip(self.0) {
-            map.serialize_entry(name, cell)?;
-        }
-        map.end()
     }
 }
 
 /// A table with aligned columns, and an explanation of them below it.
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let heading = self.columns().into_iter().map(str::to_owned).collect();
-        let all: Vec<Vec<String>> = std::iter::once(heading).chain(self.rows()).collect();
+        let mut all = self.rows();
+        all.insert(0, self.columns().into_iter().map(str::to_owned).collect());
         let width = |column: usize| {
             all.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
         };

@@ -3,6 +3,9 @@
 #![allow(dead_code, unused_imports)] // each test takes what it needs
 
 mod alarms;
+#[cfg(feature = "workbook")]
+pub mod drawn;
+pub mod rivals;
 
 pub use alarms::{BUDGETS, alarm, deviations};
 use std::f64::consts::{PI, TAU};

@@ -59,16 +59,14 @@ pub fn errors_in_ulps() -> Result<Figure> {
     cdf.text(Ink::Vermilion, [1e-8, 1e10], Side::Right, "× 1 − exp(−x)")
         .text(Ink::Green, [1e-17, 250.0], Side::Right, "▲ 2 exp(−x/2) sinh(x/2)")
         .text(Ink::Blue, [1e-17, 12.0], Side::Right, "● −exp_m1(−x)");
-    Plot::of("extremes_ulps", 72.0, vec![quantile, cdf])
-        .titled(
-            "Near 0 the obvious formulas lose all digits; ln_1p and exp_m1 lose none",
-            "Errors in units of the last place, logarithmic, against u and x from 1e-18 to 1. −ln(1 − u) and \
+    Plot::of("extremes_ulps", 72.0, vec![quantile, cdf]).draw(
+        "Near 0 the obvious formulas lose all digits; ln_1p and exp_m1 lose none",
+        "Errors in units of the last place, logarithmic, against u and x from 1e-18 to 1. −ln(1 − u) and \
              1 − exp(−x) are off by one part in 1e16 of 1, which for a small argument is all of it: up to \
              1e16 units of the last place, where the result is 0. ln_1p and exp_m1 stay within one \
              everywhere, the fast logarithm does where u is a whole number of 2⁻⁵³, as uniform numbers are, \
              and so does the product with sinh, within two. Errors below 0.05 are drawn there.",
-        )
-        .draw()
+    )
 }
 
 fn ulp_panel(heading: &str, argument: &str) -> Panel {
@@ -153,18 +151,16 @@ pub fn running_mean_errors(seed: u64) -> Result<Figure> {
         .text(Ink::Black, [12.0, 1e-10], Side::Right, "std error of the mean")
         .text(Ink::Green, [12.0, 3e-14], Side::Right, "in f64")
         .text(Ink::Blue, [12.0, 2e-20], Side::Right, "as an Estimate");
-    Plot::of("extremes_mean", 72.0, vec![panel])
-        .titled(
-            "A sum that rounds drifts away from the mean",
-            format!(
-                "The error of the running mean of 10¹⁰ + U relative to the mean, both axes logarithmic, over \
+    Plot::of("extremes_mean", 72.0, vec![panel]).draw(
+        "A sum that rounds drifts away from the mean",
+        format!(
+            "The error of the running mean of 10¹⁰ + U relative to the mean, both axes logarithmic, over \
                  {DRAWS} draws (seed {seed}). Summed in f32 it reaches {worst:.1} %, and is {last:.1} % at \
                  the end; in f64 it drifts too; the mean that an Estimate keeps stays at the rounding of its \
                  last digit. The thin line is the standard error, below which an error does not matter. \
                  Errors below 1e-18 are drawn there."
-            ),
-        )
-        .draw()
+        ),
+    )
 }
 
 /// 10¹⁰ + U has steps of 2⁻¹⁹ in f64.

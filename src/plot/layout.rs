@@ -1,0 +1,120 @@
+//! A figure before it is drawn: its panels and their numbers.
+
+use std::fmt::Write as _;
+
+use super::panel::Item;
+use super::{Edition, Figure, Ink, Panel, document, render};
+use crate::error::{Error, Result};
+use crate::numbers::{csv_field, typeset};
+
+/// A figure before it is drawn.
+#[derive(Debug, Clone)]
+pub(crate) struct Plot {
+    /// The question's number and a word: the same in both editions.
+    pub name: &'static str,
+    pub edition: Edition,
+    pub width_mm: f64,
+    pub height_mm: f64,
+    /// Panels side by side, in rows of this many.
+    pub columns: usize,
+    pub panels: Vec<Panel>,
+}
+
+impl Plot {
+    /// The solution's figure of these panels: a column wide if it is one, else in a row across the page.
+    pub fn of(name: &'static str, height_mm: f64, panels: Vec<Panel>) -> Self {
+        let width_mm = if panels.len() > 1 { 170.0 } else { 85.0 };
+        Self { name, edition: Edition::Solution, width_mm, height_mm, columns: panels.len(), panels }
+    }
+
+    /// Draws it, under a title that says in one line what it shows, with a description for readers who cannot
+    /// see it. In the student edition neither must tell the answer.
+    pub fn draw(&self, title: impl Into<String>, description: impl Into<String>) -> Result<Figure> {
+        let (title, description) = (title.into(), description.into());
+        let suffix = match self.edition {
+            Edition::Student => "_student",
+            Edition::Solution => "",
+        };
+        let name = format!("{}{suffix}", self.name);
+        let mut axes = self.panels.iter().flat_map(|panel| [&panel.x, &panel.y]);
+        if let Some(axis) = axes.find(|axis| !axis.can_be_drawn()) {
+            let [low, high] = [axis.low, axis.high].map(|end| typeset(end, 3));
+            let reason = format!("no axis can be drawn from {low} to {high} ({})", axis.name);
+            return Err(Error::Draft { what: name, reason });
+        }
+        let body = render::body(self).map_err(|reason| Error::Draft { what: name.clone(), reason })?;
+        let svg = document::of_plot(self, &name, [&title, &description], &body);
+        Ok(Figure { svg, csv: self.csv(), title, description, edition: self.edition, name })
+    }
+
+    /// All points drawn, one row each; the columns low and high are for bands and error bars. Points that are
+    /// NaN are left out. So are coloured curves in the student edition, since their numbers would tell the
+    /// answer.
+    fn csv(&self) -> String {
+        let mut csv = String::from("panel,series,x,y,low,high\n");
+        let items = self.panels.iter().flat_map(|panel| panel.items.iter().map(move |item| (panel, item)));
+        for (panel, item) in items {
+            let plain = |points: &[[f64; 2]]| {
+                points.iter().map(|&[x, y]| [Some(x), Some(y), None, None]).collect::<Vec<_>>()
+            };
+            let (series, rows) = match item {
+                Item::Line { ink, .. }
+                    if self.edition == Edition::Student && !matches!(ink, Ink::Black | Ink::Grey) =>
+                {
+                    continue;
+                }
+                Item::Line { series, points, .. }
+                | Item::Marks { series, points, .. }
+                | Item::Bars { series, points, .. } => (series, plain(points)),
+                Item::Band { series, points, .. } => {
+                    let row = |&[x, low, high]: &[f64; 3]| [Some(x), None, Some(low), Some(high)];
+                    (series, points.iter().map(row).collect())
+                }
+                Item::ErrorBars { series, points, .. } => {
+                    (series, points.iter().map(|point| point.map(Some)).collect())
+                }
+                Item::Shade { .. } | Item::Arrow { .. } | Item::Text { .. } | Item::Label { .. } => continue,
+            };
+            if series.is_empty() {
+                continue;
+            }
+            for row in rows.into_iter().filter(|row| !row.iter().flatten().any(|cell| cell.is_nan())) {
+                let cells = row.map(|cell| cell.map(six_digits).unwrap_or_default());
+                // writing to a String cannot fail
+                let [panel, series] = [&panel.heading, series].map(|name| csv_field(name));
+                let _ = writeln!(csv, "{panel},{series},{}", cells.join(","));
+            }
+        }
+        csv
+    }
+}
+
+/// Six significant digits, so that different last digits of ln and sin on other machines do not show.
+fn six_digits(x: f64) -> String {
+    // `{:e}` rounds to significant digits
+    let text = format!("{x:.5e}");
+    let plain = x == 0.0 || (-4.0..15.0).contains(&x.abs().log10());
+    if plain { text.parse().map_or(text, |rounded: f64| rounded.to_string()) } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_six_digits() {
+        for (x, shown) in [
+            (0.0, "0"),
+            (1.0, "1"),
+            (-0.25, "-0.25"),
+            (1.386_294_361_119_890_6, "1.38629"),
+            (123_456_789.0, "123457000"),
+            (0.000_123_456_789, "0.000123457"),
+            (1.234_567_89e-9, "1.23457e-9"),
+            (9.999_999_9e20, "1.00000e21"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(six_digits(x), shown);
+        }
+    }
+}
