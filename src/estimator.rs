@@ -1,5 +1,7 @@
 //! The formula ⟨Fₙ⟩ = 1/n Σ f(Xᵢ)/p(Xᵢ). An estimator is a function of uniform random numbers.
 
+use std::ops::Deref;
+
 use pulp::NullaryFnOnce;
 
 use crate::doubt::Doubt;
@@ -42,24 +44,8 @@ pub trait Estimator: Sync {
     }
 }
 
-impl<E: Estimator + ?Sized> Estimator for &E {
-    fn draw(&self, rng: &mut Stream) -> f64 {
-        (**self).draw(rng)
-    }
-
-    fn fill(&self, rng: &mut Stream, draws: &mut [f64]) {
-        (**self).fill(rng, draws);
-    }
-
-    fn doubt(&self) -> Option<Doubt> {
-        (**self).doubt()
-    }
-}
-
-impl<E: Estimator + ?Sized> Estimator for Box<E>
-where
-    Box<E>: Sync,
-{
+/// References and boxes of estimators are estimators.
+impl<P: Deref<Target: Estimator> + Sync> Estimator for P {
     fn draw(&self, rng: &mut Stream) -> f64 {
         (**self).draw(rng)
     }
@@ -83,13 +69,11 @@ where
 /// assert!(estimate.z(1.0 / 3.0).unwrap().abs() < 5.0);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
-pub fn from_fn<F: Fn(&mut Stream) -> f64 + Sync>(f: F) -> FromFn<F> {
+pub fn from_fn<F: Fn(&mut Stream) -> f64 + Sync>(f: F) -> impl Estimator {
     FromFn(f)
 }
 
-/// An estimator made of a closure; see [`from_fn`].
-#[derive(Debug, Clone, Copy)]
-pub struct FromFn<F>(F);
+struct FromFn<F>(F);
 
 impl<F: Fn(&mut Stream) -> f64 + Sync> Estimator for FromFn<F> {
     #[inline]
@@ -111,13 +95,11 @@ impl<F: Fn(&mut Stream) -> f64 + Sync> Estimator for FromFn<F> {
 /// assert!(estimate.z(std::f64::consts::PI).unwrap().abs() < 5.0);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
-pub fn from_uniforms<const N: usize, F: Fn([f64; N]) -> f64 + Sync>(f: F) -> FromUniforms<N, F> {
+pub fn from_uniforms<const N: usize, F: Fn([f64; N]) -> f64 + Sync>(f: F) -> impl Estimator {
     FromUniforms(f)
 }
 
-/// An estimator made of a closure of N numbers; see [`from_uniforms`].
-#[derive(Debug, Clone, Copy)]
-pub struct FromUniforms<const N: usize, F>(F);
+struct FromUniforms<const N: usize, F>(F);
 
 impl<const N: usize, F: Fn([f64; N]) -> f64 + Sync> Estimator for FromUniforms<N, F> {
     #[inline]

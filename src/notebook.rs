@@ -279,7 +279,7 @@ const CERTAIN: f64 = 5.0;
 ///
 /// let multiplied = Attempt::new(|p: &Samples, rng| -p.rate * (1.0 - rng.uniform()).ln());
 /// let Checked::Found(diagnosis) = check_mine(&multiplied)? else { panic!() };
-/// assert_eq!(diagnosis.finding(), Finding::Known);
+/// assert_eq!(diagnosis.finding, Finding::Known);
 /// # Ok::<(), unbiased::Error>(())
 /// ```
 ///
@@ -290,14 +290,14 @@ pub fn check_mine(mine: &Attempt<'_>) -> Result<Checked> {
         let run = Run::new(check::seed_of(probe, 1));
         told_once(probe, || mine.measure(probe, &run, Budget::Draws(DRAWS)))
     };
-    let measured: Result<Vec<_>> = mine.exercise().probes().iter().map(on).collect();
+    let measured: Result<Vec<_>> = mine.exercise.probes.iter().map(on).collect();
     match measured {
         Ok(measured) => {
             let measured: Vec<_> = measured.into_iter().map(|(measurement, _)| measurement).collect();
             Ok(Checked::Found(check::diagnose(&measured)?.shown_by(mine)))
         }
         Err(Error::OnProbe { first: true, value, .. }) if value.is_nan() => {
-            Ok(Checked::Missing(mine.exercise()))
+            Ok(Checked::Missing(mine.exercise))
         }
         Err(error) => Err(error),
     }
@@ -308,8 +308,8 @@ impl Checked {
     /// errors of the measured means.
     pub fn within(&self) -> Option<f64> {
         match self {
-            Self::Found(diagnosis) if diagnosis.finding() == Finding::NothingWrong => {
-                let measurements = diagnosis.measurements().iter();
+            Self::Found(diagnosis) if diagnosis.finding == Finding::NothingWrong => {
+                let measurements = diagnosis.measurements.iter();
                 let off = measurements.map(|measurement| {
                     let ratio = measurement.ratio();
                     (ratio.mean - measurement.probe.right_ratio()).abs() + CERTAIN * ratio.error
@@ -325,7 +325,7 @@ impl Show for Checked {
     fn show(&self) -> Shown {
         let diagnosis = match self {
             Self::Missing(exercise) => {
-                let what = exercise.name();
+                let what = exercise.name;
                 return Shown::verdict(
                     None,
                     &format!("Missing: there is no estimator of “{what}” yet; its draw is NaN."),
@@ -345,7 +345,7 @@ impl Show for Checked {
 }
 
 fn good(diagnosis: &Diagnosis) -> Option<bool> {
-    match diagnosis.finding() {
+    match diagnosis.finding {
         Finding::NothingWrong => Some(true),
         Finding::Known | Finding::Unknown => Some(false),
         Finding::Unclear => None,

@@ -60,7 +60,7 @@ const MOST_POINTS: u64 = 1 << 16;
 ///
 /// # Errors
 /// If n is not from 1 to 2¹⁶: the sequence would repeat.
-pub fn sobol<E: Estimator>(estimator: E, points: u64) -> Result<Placed<E>> {
+pub fn sobol<E: Estimator>(estimator: E, points: u64) -> Result<impl Estimator> {
     let ok = (1..=MOST_POINTS).contains(&points);
     let points = require_count("the number of Sobol points", points, ok, "from 1 to 65536")?;
     Ok(Placed { estimator, points, side: None })
@@ -76,14 +76,13 @@ pub fn sobol<E: Estimator>(estimator: E, points: u64) -> Result<Placed<E>> {
 ///
 /// # Errors
 /// If the side s is not from 1 to 256: the set would have more than 2¹⁶ points.
-pub fn jittered<E: Estimator>(estimator: E, side: u64) -> Result<Placed<E>> {
+pub fn jittered<E: Estimator>(estimator: E, side: u64) -> Result<impl Estimator> {
     let side = require_count("the side of the grid", side, (1..=256).contains(&side), "from 1 to 256")?;
     Ok(Placed { estimator, points: side * side, side: Some(side) })
 }
 
-/// An estimator over a set of points; see [`sobol`] and [`jittered`].
-#[derive(Debug, Clone, Copy)]
-pub struct Placed<E> {
+/// An estimator over a set of points.
+struct Placed<E> {
     estimator: E,
     points: u64,
     /// The side of the grid, if it is one.

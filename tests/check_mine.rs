@@ -283,14 +283,14 @@ fn probes_say_all_that_a_program_needs() {
             let data: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
             let names = text.lines().rfind(|line| line.starts_with("# probe")).unwrap();
             let names: Vec<&str> = names.split(' ').skip(2).collect();
-            assert!(data.len() == exercise.probes().len() && lines.len() == data.len(), "{text}");
+            assert!(data.len() == exercise.probes.len() && lines.len() == data.len(), "{text}");
             for (number, ((data, line), probe)) in
                 (1..).zip(data.iter().zip(&lines).zip(exercise.probes_of(question)))
             {
                 let words: Vec<&str> = data.split(' ').collect();
                 assert_eq!(words[0], number.to_string());
                 assert_eq!(line["probe"], number);
-                assert_eq!(line["truth"].as_f64(), Some(probe.truth()));
+                assert_eq!(line["truth"].as_f64(), Some(probe.truth));
                 assert!(text.contains(&format!("#   {number}. {probe}: the truth is ")));
                 assert_eq!(words.len(), 1 + names.len());
                 for (name, word) in names.iter().zip(&words[1..]) {

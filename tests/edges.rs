@@ -216,7 +216,7 @@ proptest! {
         }
         let finite: Vec<f64> = draws.into_iter().filter(|draw| draw.is_finite()).collect();
         let (left, right) = finite.split_at(split.min(finite.len()));
-        let mut merged: Estimate = right.iter().copied().collect();
+        let mut merged = Estimate::from_draws(right);
         merged.merge(&Estimate::from_draws(left));
         let least = finite.iter().copied().fold(f64::INFINITY, f64::min);
         let greatest = finite.iter().copied().fold(f64::NEG_INFINITY, f64::max);

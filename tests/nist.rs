@@ -133,10 +133,10 @@ fn merging_at_every_split_point_loses_nothing() {
 
 /// Leaves of one to `leaf` draws, merged as the words say.
 fn tree(draws: &[f64], words: &mut impl Iterator<Item = usize>, leaf: usize) -> Estimate {
-    let word = words.next().unwrap_or(0);
     if draws.len() <= leaf {
-        return if word & 1 == 0 { Estimate::from_draws(draws) } else { draws.iter().copied().collect() };
+        return Estimate::from_draws(draws);
     }
+    let word = words.next().unwrap_or(0);
     let (left, right) = draws.split_at(1 + (word >> 1) % (draws.len() - 1));
     let (left, right) = (tree(left, words, leaf), tree(right, words, leaf));
     let (mut first, second) = if word & 1 == 0 { (left, right) } else { (right, left) };
@@ -155,6 +155,21 @@ proptest! {
             let lre = Exact::of(&draws).lre(&tree(&draws, &mut words.iter().copied(), leaf));
             prop_assert!(is_good(lre), "{name}: {lre:?}");
         }
+    }
+}
+
+proptest! {
+    #![proptest_config(common::config(2000))]
+
+    /// Of any draws of ordinary size, on the grid 2⁻³⁴.
+    #[test]
+    fn moments_are_those_of_exact_sums(draws in prop::collection::vec(-1e3..1e3f64, 2..2000)) {
+        let draws: Vec<f64> = draws.iter().map(|x| (x * 2f64.powi(34)).round() / 2f64.powi(34)).collect();
+        let (mut exact, estimate) = (Exact::new(draws[0], 34), Estimate::from_draws(&draws));
+        exact.add(&draws);
+        let size = draws.iter().map(|x| x.abs()).fold(0.0, f64::max);
+        prop_assert!((estimate.mean() - exact.mean()).abs() <= 1e-15 * size);
+        prop_assert!(exact.lre(&estimate)[1] >= 13.0);
     }
 }
 
@@ -195,7 +210,7 @@ fn the_mean_of_1e9_draws_is_that_of_a_compensated_sum() {
     let mut draws = vec![0.0; 1_000_000];
     for _ in 0..1000 {
         common::fill_uniform(&mut rng, &mut draws);
-        estimate.extend_from_slice(&draws);
+        estimate.merge(&Estimate::from_draws(&draws));
         for x in &draws {
             let next = sum + x;
             lost += if sum >= *x { (sum - next) + x } else { (x - next) + sum };

@@ -59,7 +59,7 @@ fn the_table_is_that_of_the_questions_and_has_every_figure() {
 
 #[test]
 fn the_mistakes_are_counted() {
-    let mistakes: usize = exercises().iter().map(|exercise| exercise.mistakes().len()).sum();
+    let mistakes: usize = exercises().iter().map(|exercise| exercise.mistakes.len()).sum();
     let words: Vec<&str> = README.split_whitespace().collect();
     assert!(words.join(" ").contains(&format!("which of {mistakes} classic mistakes")), "{mistakes}");
     assert!(words.contains(&"sixteen") && questions().count() == 16);

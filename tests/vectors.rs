@@ -272,7 +272,9 @@ fn draws_of(row: &Row) -> Vec<f64> {
 fn statistics(row: &Row) -> Result<Found, Error> {
     let draws = draws_of(row);
     let n = draws.len() as f64;
-    let ways = [Estimate::from_draws(&draws), draws.iter().copied().collect()];
+    let mut pushed = Estimate::new();
+    draws.iter().for_each(|draw| pushed.push(*draw));
+    let ways = [Estimate::from_draws(&draws), pushed];
     Ok(Values(match row.function.as_str() {
         // 106 bits cannot hold 1 beside 1e100 or 1e32·1000
         "sum" if draws.contains(&1e100) || draws.contains(&1e32) => return Ok(ExactOnly),

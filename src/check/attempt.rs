@@ -16,14 +16,15 @@ use crate::stream::{Stream, mix};
 /// use unbiased::{Budget, check::Attempt, estimate, inversion::mistakes::Samples};
 ///
 /// let attempt = Attempt::new(|p: &Samples, rng| -(1.0 - rng.uniform()).ln() / p.rate);
-/// for probe in attempt.exercise().probes() {
+/// for probe in attempt.exercise.probes {
 ///     let estimate = estimate(&attempt.on(probe)?, Budget::Draws(10_000), 1)?;
-///     assert!(estimate.z(probe.truth()).unwrap().abs() < 5.0);
+///     assert!(estimate.z(probe.truth).unwrap().abs() < 5.0);
 /// }
 /// # Ok::<(), unbiased::Error>(())
 /// ```
 pub struct Attempt<'a> {
-    pub(super) exercise: &'static Exercise,
+    /// The exercise that it belongs to.
+    pub exercise: &'static Exercise,
     pub(super) draw: Box<Draw<'a>>,
 }
 
@@ -34,41 +35,25 @@ impl<'a> Attempt<'a> {
         Self { exercise: P::exercise(), draw: erased(draw) }
     }
 
-    /// The exercise that it belongs to.
-    pub fn exercise(&self) -> &'static Exercise {
-        self.exercise
-    }
-
     /// The attempt on a probe, as an estimator of [`Probe::truth`].
     ///
     /// # Errors
     /// If the probe belongs to another exercise.
     pub fn on(&self, probe: &Probe) -> Result<impl Estimator + use<'_, 'a>> {
-        let index = probe.index();
+        let index = probe.index;
         if std::ptr::eq(probe.exercise(), self.exercise) {
             Ok(from_fn(move |rng| (self.draw)(index, 1.0, rng)))
         } else {
-            let mine = self.exercise.name();
+            let mine = self.exercise.name;
             Err(Error::Usage(format!("an attempt at “{mine}” cannot be tried on “{probe}”")))
         }
     }
-}
 
-impl fmt::Debug for Attempt<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Attempt").field(&self.exercise).finish()
-    }
-}
-
-/// Enough draws to estimate the skewness.
-const FIRST: u64 = 1 << 17;
-
-impl Attempt<'_> {
     /// Draws on one probe until the budget is spent, with the run's threads, limits and progress.
     ///
     /// # Errors
     /// Those of [`Run::estimate`]; the error of a draw that is NaN or infinite names the probe.
-    pub fn measure(
+    pub(crate) fn measure(
         &self,
         probe: &'static Probe,
         run: &Run<'_>,
@@ -96,10 +81,19 @@ impl Attempt<'_> {
     }
 }
 
+impl fmt::Debug for Attempt<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Attempt").field(&self.exercise).finish()
+    }
+}
+
+/// Enough draws to estimate the skewness.
+const FIRST: u64 = 1 << 17;
+
 /// The seed of a probe's draws. It differs between probes, since a diagnosis treats their errors as
 /// independent.
 pub fn seed_of(probe: &Probe, seed: u64) -> u64 {
-    mix(seed.wrapping_add(mix(probe.index() as u64 + 1)))
+    mix(seed.wrapping_add(mix(probe.index as u64 + 1)))
 }
 
 /// Measures an attempt on all probes of its exercise, with `draws` draws each.
@@ -112,5 +106,5 @@ pub fn measure(attempt: &Attempt<'_>, draws: u64, seed: u64) -> Result<Vec<Measu
         let run = Run::new(seed_of(probe, seed));
         attempt.measure(probe, &run, Budget::Draws(draws)).map(|(measurement, _)| measurement)
     };
-    attempt.exercise().probes().iter().map(on).collect()
+    attempt.exercise.probes.iter().map(on).collect()
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::attempt::Attempt;
-use super::exercise::{Exercise, Probe};
+use super::exercise::{Draw, Exercise, Probe};
 use crate::stream::Stream;
 
 /// Random numbers at which an estimator's draw differs from the right estimator's.
@@ -39,16 +39,11 @@ const EASY: [(f64, &str); 4] = [(0.5, "½"), (0.75, "¾"), (0.25, "¼"), (0.125,
 /// each point their ratio is the same on every probe: then they sample the same points, and only a factor or
 /// a summand may be wrong.
 pub(super) fn counterexample(exercise: &'static Exercise, attempt: &Attempt<'_>) -> Option<Counterexample> {
-    let probes: Vec<_> = exercise.probes().iter().filter(|probe| probe.averages_draws).collect();
-    exercise.right().iter().find_map(|right| {
-        let taken = |draw: &dyn Fn(usize, f64, &mut Stream) -> f64, numbers: &[f64]| {
-            let mut rng = Stream::scripted(numbers);
-            let value = draw(0, 1.0, &mut rng);
-            (rng.random_numbers(), value)
-        };
+    let probes: Vec<_> = exercise.probes.iter().filter(|probe| probe.averages_draws).collect();
+    exercise.right.iter().find_map(|right| {
         let all = [0.5, 0.25, 0.75, 0.125, 0.5, 0.25];
-        let (count, _) = taken(&**right, &all);
-        if !(1..=2).contains(&count) || taken(&*attempt.draw, &all).0 != count {
+        let (_, count) = drawn(right, 0, &all);
+        if !(1..=2).contains(&count) || drawn(&attempt.draw, 0, &all).1 != count {
             return None;
         }
         let points: Vec<Vec<f64>> = EASY
@@ -58,15 +53,11 @@ pub(super) fn counterexample(exercise: &'static Exercise, attempt: &Attempt<'_>)
                 _ => EASY.iter().map(|(v, _)| vec![*u, *v]).collect(),
             })
             .collect();
-        let pairs: Vec<Vec<[f64; 2]>> = probes
-            .iter()
-            .map(|probe| {
-                let of = |draw: &dyn Fn(usize, f64, &mut Stream) -> f64, point: &Vec<f64>| {
-                    draw(probe.index(), 1.0, &mut Stream::scripted(point))
-                };
-                points.iter().map(|point| [of(&*attempt.draw, point), of(&**right, point)]).collect()
-            })
-            .collect();
+        let on = |probe: usize, point: &[f64]| {
+            [drawn(&attempt.draw, probe, point).0, drawn(right, probe, point).0]
+        };
+        let pairs: Vec<Vec<_>> =
+            probes.iter().map(|probe| points.iter().map(|point| on(probe.index, point)).collect()).collect();
         if !(alike_on_each_probe(&pairs) || alike_at_each_point(&pairs)) {
             return None;
         }
@@ -76,6 +67,12 @@ pub(super) fn counterexample(exercise: &'static Exercise, attempt: &Attempt<'_>)
             Some(Counterexample { probe, numbers: point.clone(), yours: *yours, right: *right })
         })
     })
+}
+
+/// A draw from these numbers, and how many of them it took.
+fn drawn(draw: &Draw<'_>, probe: usize, numbers: &[f64]) -> (f64, u64) {
+    let mut rng = Stream::scripted(numbers);
+    (draw(probe, 1.0, &mut rng), rng.random_numbers())
 }
 
 fn same(a: f64, b: f64) -> bool {

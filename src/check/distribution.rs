@@ -10,15 +10,15 @@ use crate::float::is_probability;
 use crate::stream::Stream;
 
 /// The result of comparing draws with their claimed distribution.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
     /// Whether the draws are consistent with the distribution claimed. `false` is wrong with probability at
     /// most α; `true` does not exclude the deviations that `unseen` names.
     pub agrees: bool,
     /// The largest statistic found, divided by the largest one allowed: above 1 the draws do not agree.
     pub strain: f64,
-    /// The comparison that gave the largest statistic.
-    pub place: Place,
+    /// The comparison that gave the largest statistic: "the cdf at 0.5". Cells are counted from 0.
+    pub place: String,
     /// Draws taken.
     pub draws: usize,
     /// The probability of calling a right sampler wrong.
@@ -27,22 +27,8 @@ pub struct Agreement {
     pub unseen: &'static str,
 }
 
-/// Where the draws and the claimed distribution differ most.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Place {
-    /// The empirical cdf at this value.
-    Value(f64),
-    /// The empirical cdf of the first uniform number at this value.
-    First(f64),
-    /// The empirical cdf of the second uniform number at this value.
-    Second(f64),
-    /// The fraction of points in this cell of the two uniform numbers, each divided into [`CELLS`] intervals,
-    /// counted from 0.
-    Cell(usize, usize),
-}
-
 /// Intervals into which [`points`] divides each of the two uniform numbers.
-pub const CELLS: usize = 8;
+const CELLS: usize = 8;
 
 /// Compares the distribution of an estimator's draws with a claimed cdf.
 ///
@@ -81,7 +67,7 @@ pub fn distributed_as(
     Ok(Agreement {
         agrees: found <= band(draws, alpha),
         strain: found / band(draws, alpha),
-        place: Place::Value(at),
+        place: format!("the cdf at {at:.6}"),
         draws,
         alpha,
         unseen: "a deviation of the cdf smaller than asked for, dependence between draws",
@@ -131,21 +117,21 @@ pub fn points<P>(
         seconds.push(v);
     }
     let uniform = |number: f64| number.clamp(0.0, 1.0);
-    let (of_first, first) = largest_deviation(&mut firsts, uniform)?;
-    let (of_second, second) = largest_deviation(&mut seconds, uniform)?;
-    let mut strains = vec![
-        (of_first / band(draws, part), Place::First(first)),
-        (of_second / band(draws, part), Place::Second(second)),
-    ];
+    let mut strains = Vec::new();
+    for (which, numbers) in [("first", &mut firsts), ("second", &mut seconds)] {
+        let (found, at) = largest_deviation(numbers, uniform)?;
+        strains
+            .push((found / band(draws, part), format!("the cdf of the {which} uniform number at {at:.6}")));
+    }
     let cells = (CELLS * CELLS) as f64;
     for (row, counts) in counts.iter().enumerate() {
         for (column, count) in counts.iter().enumerate() {
             let entropy = draws as f64 * relative_entropy(*count as f64 / draws as f64, 1.0 / cells);
-            strains.push((entropy / (2.0 * cells / part).ln(), Place::Cell(row, column)));
+            let place = format!("the cell ({row}, {column}) of the two uniform numbers");
+            strains.push((entropy / (2.0 * cells / part).ln(), place));
         }
     }
-    let (strain, place) =
-        strains.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, Place::First(0.0)));
+    let (strain, place) = strains.into_iter().max_by(|(a, _), (b, _)| a.total_cmp(b)).unwrap_or_default();
     Ok(Agreement {
         agrees: strain <= 1.0,
         strain,
@@ -211,17 +197,11 @@ fn relative_entropy(a: f64, b: f64) -> f64 {
 impl fmt::Display for Agreement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let verdict = if self.agrees { "as claimed" } else { "not as claimed" };
-        let place = match self.place {
-            Place::Value(x) => format!("the cdf at {x:.6}"),
-            Place::First(u) => format!("the cdf of the first uniform number at {u:.6}"),
-            Place::Second(v) => format!("the cdf of the second uniform number at {v:.6}"),
-            Place::Cell(row, column) => format!("the cell ({row}, {column}) of the two uniform numbers"),
-        };
+        let Self { strain, place, draws, alpha, unseen, .. } = self;
         write!(
             f,
-            "distributed {verdict}: the largest difference, in {place}, is {:.2} of the one allowed (α = \
-             {:.0e}, {} draws); not seen: {}",
-            self.strain, self.alpha, self.draws, self.unseen
+            "distributed {verdict}: the largest difference, in {place}, is {strain:.2} of the one allowed \
+             (α = {alpha:.0e}, {draws} draws); not seen: {unseen}"
         )
     }
 }

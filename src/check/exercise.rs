@@ -89,14 +89,19 @@ pub(super) fn erased<'a, P: Problem>(
 /// A problem of an exercise, in words and numbers.
 #[derive(Debug)]
 pub struct Probe {
+    /// What a right estimator's draws average to.
+    pub truth: f64,
+    /// What means are divided by to give ratios: |truth|, or a typical size where the truth is 0.
+    pub scale: f64,
+    /// Its parameters by name.
+    pub given: Vec<(&'static str, Given)>,
+    /// Its index among the exercise's probes, from 0.
+    pub index: usize,
     exercise: fn() -> &'static Exercise,
-    index: usize,
     text: String,
-    truth: f64,
-    scale: f64,
     pub(super) averages_draws: bool,
-    given: Vec<(&'static str, Given)>,
-    pub(super) factors: Vec<(&'static str, f64)>,
+    /// Constants by which draws may be wrong: those of mathematics, the parameters and their inverses.
+    pub(super) factors: Vec<(String, f64)>,
 }
 
 impl Probe {
@@ -105,29 +110,9 @@ impl Probe {
         (self.exercise)()
     }
 
-    /// What a right estimator's draws average to.
-    pub fn truth(&self) -> f64 {
-        self.truth
-    }
-
-    /// What means are divided by to give ratios: |truth|, or a typical size where the truth is 0.
-    pub fn scale(&self) -> f64 {
-        self.scale
-    }
-
     /// The ratio of a right estimator: 1, or 0 where the truth is 0.
-    pub fn right_ratio(&self) -> f64 {
+    pub(crate) fn right_ratio(&self) -> f64 {
         self.truth / self.scale
-    }
-
-    /// Its index among the exercise's probes, from 0.
-    pub fn index(&self) -> usize {
-        self.index
-    }
-
-    /// Its parameters by name.
-    pub fn given(&self) -> &[(&'static str, Given)] {
-        &self.given
     }
 
     /// Whether draws on this probe can tell this ratio from a right estimator's.
@@ -145,61 +130,40 @@ impl fmt::Display for Probe {
 
 /// A wrong estimator and what is wrong with it.
 pub struct Mistake {
-    words: Words,
+    /// The worksheet's question in which it is made.
+    pub question: &'static str,
+    /// A stable name for programs: `log10`.
+    pub id: &'static str,
+    /// What it is called.
+    pub name: &'static str,
+    /// The wrong formula.
+    pub formula: &'static str,
+    /// How to correct it.
+    pub mend: &'static str,
     index: usize,
     wrong: Box<Draw<'static>>,
 }
 
-/// What a mistake is, in words.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Words {
-    pub id: &'static str,
-    pub question: &'static str,
-    pub name: &'static str,
-    pub formula: &'static str,
-    pub mend: &'static str,
-}
-
 impl Mistake {
-    /// A mistake, with the estimator that makes it.
-    pub(crate) fn new<P: Problem>(
-        words: Words,
-        wrong: impl Fn(&P, &mut Stream) -> f64 + Send + Sync + 'static,
-    ) -> Self {
-        Self { words, index: 0, wrong: erased(wrong) }
-    }
-
-    /// A stable name for programs: `log10`.
-    pub fn id(&self) -> &'static str {
-        self.words.id
-    }
-
-    /// What it is called.
-    pub fn name(&self) -> &'static str {
-        self.words.name
-    }
-
-    /// The worksheet's question in which it is made.
-    pub fn question(&self) -> &'static str {
-        self.words.question
-    }
-
-    /// The wrong formula.
-    pub fn formula(&self) -> &'static str {
-        self.words.formula
-    }
-
-    /// How to correct it.
-    pub fn mend(&self) -> &'static str {
-        self.words.mend
+    /// The mean square of its draws on a probe, divided by the scale squared, to a few per cent.
+    pub(super) fn square(&self, probe: &Probe) -> f64 {
+        let squared = from_fn(|rng| ((self.wrong)(probe.index, 1.0, rng) / probe.scale).powi(2));
+        estimate(&squared, Budget::Draws(4 * POINTS), 1).map_or(f64::NAN, |square| square.mean())
     }
 }
 
 impl fmt::Debug for Mistake {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.words.fmt(f)
+        f.debug_tuple("Mistake").field(&self.id).finish()
     }
 }
+
+/// An estimator of a topic's problem, as code.
+pub(crate) type Code<P> = fn(&P, &mut Stream) -> f64;
+
+/// A mistake as a topic lists it: the question, the id, the name, the formula, how to mend it; and the wrong
+/// estimator.
+pub(crate) type Listed<P> = ([&'static str; 5], Code<P>);
 
 /// What an exercise is, in words.
 #[derive(Debug, Clone, Copy)]
@@ -214,21 +178,25 @@ pub(crate) struct About {
 
 /// An estimator to be written: the probes on which it is tried, right estimators, and the classic mistakes.
 pub struct Exercise {
-    about: About,
-    probes: Vec<Probe>,
-    right: Vec<Box<Draw<'static>>>,
-    mistakes: Vec<Mistake>,
-    compounds: Vec<Compound>,
+    /// A name for programs: `reflected`.
+    pub id: &'static str,
+    /// What it is called: `reflected light`.
+    pub name: &'static str,
+    /// What one draw is, and what the words of the probes mean.
+    pub draw: &'static str,
+    /// Its probes, the worksheet's own case first.
+    pub probes: Vec<Probe>,
+    /// Its classic mistakes.
+    pub mistakes: Vec<Mistake>,
+    questions: &'static [(&'static str, usize)],
+    /// Right estimators, which use their random numbers as the worksheet does.
+    pub(super) right: Vec<Box<Draw<'static>>>,
     /// For each probe, once needed: the ratios of all mistakes, and of all compounds.
     found: Vec<[OnceLock<Vec<Ratio>>; 2]>,
 }
 
-/// A right estimator, as an exercise holds it.
-pub(crate) type Right<P> = fn(&P, &mut Stream) -> f64;
-
 impl Exercise {
-    /// The exercise of these problems; the right estimators use their random numbers as the worksheet does.
-    pub(crate) fn new<P: Problem>(about: About, right: &[Right<P>], mistakes: Vec<Mistake>) -> Self {
+    pub(crate) fn new<P: Problem>(about: About, right: &[Code<P>], mistakes: &[Listed<P>]) -> Self {
         let probe = |(index, problem): (usize, &P)| Probe {
             exercise: P::exercise,
             index,
@@ -237,14 +205,20 @@ impl Exercise {
             scale: problem.scale(),
             averages_draws: problem.averages_draws(),
             given: problem.given(),
-            factors: problem.factors(),
+            factors: factors(&problem.factors()),
+        };
+        let mistake = |(index, (words, wrong)): (usize, &Listed<P>)| {
+            let [question, id, name, formula, mend] = *words;
+            Mistake { question, id, name, formula, mend, index, wrong: erased(*wrong) }
         };
         let probes: Vec<_> = P::all().iter().enumerate().map(probe).collect();
-        let mistakes: Vec<_> =
-            (0..).zip(mistakes).map(|(index, mistake)| Mistake { index, ..mistake }).collect();
+        let mistakes: Vec<_> = mistakes.iter().enumerate().map(mistake).collect();
+        let About { id, name, questions, draw } = about;
         Self {
-            about,
-            compounds: compounds(&probes, &mistakes),
+            id,
+            name,
+            draw,
+            questions,
             found: probes.iter().map(|_| Default::default()).collect(),
             probes,
             right: right.iter().map(|right| erased::<P>(*right)).collect(),
@@ -252,45 +226,20 @@ impl Exercise {
         }
     }
 
-    /// A name for programs: `reflected`.
-    pub fn id(&self) -> &'static str {
-        self.about.id
-    }
-
-    /// What it is called: `reflected light`.
-    pub fn name(&self) -> &'static str {
-        self.about.name
-    }
-
-    /// What one draw is, and what the words of the probes mean.
-    pub fn draw(&self) -> &'static str {
-        self.about.draw
-    }
-
     /// The worksheet's questions that ask for it.
     pub fn questions(&self) -> impl Iterator<Item = &'static str> + use<> {
-        self.about.questions.iter().map(|(question, _)| *question)
-    }
-
-    /// Its probes, the worksheet's own case first.
-    pub fn probes(&self) -> &[Probe] {
-        &self.probes
+        self.questions.iter().map(|(question, _)| *question)
     }
 
     /// Its probes, with this question's own case first.
     pub fn probes_of(&self, question: &str) -> Vec<&Probe> {
-        let own = self.about.questions.iter().find(|(asked, _)| *asked == question);
+        let own = self.questions.iter().find(|(asked, _)| *asked == question);
         let own = own.map_or(0, |(_, own)| *own);
         let mut probes: Vec<_> = self.probes.iter().collect();
         if let Some(first) = probes.get_mut(..=own) {
             first.rotate_right(1);
         }
         probes
-    }
-
-    /// Its classic mistakes.
-    pub fn mistakes(&self) -> &[Mistake] {
-        &self.mistakes
     }
 
     /// The mean of a mistake's draws on a probe, divided by [`Probe::scale`].
@@ -301,49 +250,33 @@ impl Exercise {
         all.get(mistake.index).copied().unwrap_or(Ratio::UNKNOWN)
     }
 
-    /// The mean square of a mistake's draws on a probe, divided by the scale squared, to a few per cent.
-    pub(super) fn square(&self, mistake: &Mistake, probe: &Probe) -> f64 {
-        let squared = from_fn(|rng| ((mistake.wrong)(probe.index, 1.0, rng) / probe.scale).powi(2));
-        estimate(&squared, Budget::Draws(4 * POINTS), 1).map_or(f64::NAN, |square| square.mean())
-    }
-
-    /// A mistake, as if it were your own estimator.
-    pub fn attempt_of(&'static self, mistake: &'static Mistake) -> Attempt<'static> {
-        self.attempt_times(1.0, mistake)
-    }
-
-    /// A mistake with every draw multiplied by a constant: two mistakes at once.
-    pub fn attempt_times(&'static self, constant: f64, mistake: &'static Mistake) -> Attempt<'static> {
+    /// A mistake with every draw multiplied by a constant, as if it were your own estimator.
+    pub fn attempt_of(&'static self, mistake: &'static Mistake, constant: f64) -> Attempt<'static> {
         let draw = move |probe, factor: f64, rng: &mut Stream| (mistake.wrong)(probe, constant * factor, rng);
         Attempt { exercise: self, draw: Box::new(draw) }
     }
 
-    /// Its right estimators.
-    pub(super) fn right(&self) -> &[Box<Draw<'static>>] {
-        &self.right
-    }
-
-    /// Constants times the right estimator, and times each mistake.
-    pub(super) fn compounds(&self) -> &[Compound] {
-        &self.compounds
+    /// Constants times the right estimator, and times each mistake: which constant, and the mistake.
+    pub(super) fn compounds(&self) -> impl Iterator<Item = (usize, Option<&Mistake>)> {
+        let constants = 0..self.probes.first().map_or(0, |probe| probe.factors.len());
+        let bases = || std::iter::once(None).chain(self.mistakes.iter().map(Some));
+        constants.flat_map(move |which| bases().map(move |base| (which, base)))
     }
 
     /// The ratio of each compound on a probe.
     pub(super) fn compound_ratios(&self, probe: &Probe) -> &[Ratio] {
         let Some([_, found]) = self.found.get(probe.index) else { return &[] };
-        let of = |compound: &Compound| self.multiplied(compound, probe);
         // first the mistakes' ratios, so that the parallel loop does not wait for their initialisation
         self.mistakes.first().map(|mistake| self.ratio(mistake, probe));
-        found.get_or_init(|| self.compounds.par_iter().map(of).collect())
+        let compounds = || self.compounds().collect::<Vec<_>>().into_par_iter();
+        found.get_or_init(|| compounds().map(|compound| self.multiplied(compound, probe)).collect())
     }
 
-    fn multiplied(&self, compound: &Compound, probe: &Probe) -> Ratio {
-        let factor = factor(compound.which, probe);
-        let mistake = compound.base.and_then(|base| self.mistakes.get(base));
+    fn multiplied(&self, (which, mistake): (usize, Option<&Mistake>), probe: &Probe) -> Ratio {
+        let factor = probe.factors.get(which).map_or(f64::NAN, |(_, factor)| *factor);
         if probe.averages_draws {
-            let ratio = mistake
-                .map_or_else(|| Ratio::exact(probe.right_ratio()), |mistake| self.ratio(mistake, probe));
-            return ratio.times(factor);
+            let right = Ratio::exact(probe.right_ratio());
+            return mistake.map_or(right, |mistake| self.ratio(mistake, probe)).times(factor);
         }
         let draw = mistake.map(|mistake| &mistake.wrong).or(self.right.first());
         draw.map_or(Ratio::UNKNOWN, |draw| ratio_of(&**draw, probe, factor))
@@ -352,40 +285,17 @@ impl Exercise {
 
 impl fmt::Debug for Exercise {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Exercise").field(&self.about.name).finish()
+        f.debug_tuple("Exercise").field(&self.name).finish()
     }
 }
 
-/// A constant times a mistake (by its index), or times a right estimator.
-pub(super) struct Compound {
-    /// What the constant is called.
-    pub factor: String,
-    which: usize,
-    pub base: Option<usize>,
-}
-
-fn compounds(probes: &[Probe], mistakes: &[Mistake]) -> Vec<Compound> {
-    let symbols = probes.first().map_or(&[][..], |probe| &probe.factors);
-    let of_mathematics = CONSTANTS.iter().map(|(name, _)| (*name).to_owned());
-    let inverse =
-        |symbol: &str| if symbol.contains(' ') { format!("1/({symbol})") } else { format!("1/{symbol}") };
-    let of_the_problem = symbols.iter().flat_map(|(symbol, _)| [(*symbol).to_owned(), inverse(symbol)]);
-    let bases = || std::iter::once(None).chain(mistakes.iter().map(|mistake| Some(mistake.index)));
-    let constants = of_mathematics.chain(of_the_problem).enumerate();
-    let all = constants
-        .flat_map(|(which, name)| bases().map(move |base| Compound { factor: name.clone(), which, base }));
-    all.collect()
-}
-
-/// Constant number `which`: first [`CONSTANTS`], then the problem's parameters and their inverses.
-fn factor(which: usize, probe: &Probe) -> f64 {
-    match (CONSTANTS.get(which), which.checked_sub(CONSTANTS.len())) {
-        (None, Some(parameter)) => {
-            let value = probe.factors.get(parameter / 2).map_or(f64::NAN, |(_, value)| *value);
-            if parameter % 2 == 0 { value } else { 1.0 / value }
-        }
-        (constant, _) => constant.map_or(f64::NAN, |(_, constant)| *constant),
-    }
+/// The constants, a problem's parameters and their inverses.
+fn factors(parameters: &[(&str, f64)]) -> Vec<(String, f64)> {
+    let own = parameters.iter().flat_map(|(symbol, value)| {
+        let inverse = if symbol.contains(' ') { format!("1/({symbol})") } else { format!("1/{symbol}") };
+        [((*symbol).to_owned(), *value), (inverse, 1.0 / value)]
+    });
+    CONSTANTS.iter().map(|(name, value)| ((*name).to_owned(), *value)).chain(own).collect()
 }
 
 /// The constants by which draws are usually wrong.

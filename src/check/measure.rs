@@ -37,7 +37,7 @@ impl Ratio {
     }
 
     /// Whether it differs from `other` by enough for draws to show it.
-    pub fn differs(self, other: Self) -> bool {
+    pub(super) fn differs(self, other: Self) -> bool {
         let size = self.mean.abs().min(other.mean.abs()).max(1.0);
         let known = APART * self.error.hypot(other.error);
         let alike = (self.mean - other.mean).abs() <= known.max(ALIKE * size);
@@ -63,12 +63,12 @@ pub struct Measurement {
 
 impl Measurement {
     /// The mean divided by the probe's scale, with its std error.
-    pub fn ratio(&self) -> Ratio {
-        Ratio::of(&self.estimate, self.probe.scale())
+    pub(crate) fn ratio(&self) -> Ratio {
+        Ratio::of(&self.estimate, self.probe.scale)
     }
 
     /// Whether all draws were the same.
-    pub fn never_varied(&self) -> bool {
+    pub(super) fn never_varied(&self) -> bool {
         self.estimate.variance().is_none_or(|variance| variance == 0.0)
     }
 

@@ -1,25 +1,13 @@
 //! A sequential test of an estimator's mean.
 
-use std::fmt;
-
 use rayon::prelude::*;
 
+use super::report::{Look, Report, Verdict};
 use super::wealth::{Bets, Growth, Wealth};
 use crate::error::{Error, Result, require};
 use crate::estimate::Estimate;
 use crate::estimator::Estimator;
 use crate::run::walk_block;
-
-/// The verdict of a check.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
-    /// The mean is not the truth; this is wrong with probability at most α.
-    Biased,
-    /// The mean is within δ of the truth; this is wrong with probability at most 2β.
-    Unbiased,
-    /// Neither could be shown with the draws allowed. Do not count it as a pass.
-    Undecided,
-}
 
 /// Checks whether `estimator`, whose draws lie in `range`, has the mean `truth` to within 0.1 % of the truth,
 /// or of the range where the truth is 0.
@@ -51,8 +39,8 @@ pub fn unbiased(estimator: &(impl Estimator + ?Sized), truth: f64, range: [f64; 
 /// smaller, each starting with a wealth of 1. If the claim holds, the average of the two wealths ever reaches
 /// 1/α with probability at most α; once it does, the estimator is called *biased*. It is called *unbiased
 /// within δ* once a bettor who bets that the mean is larger than μ(1 − δ), and one who bets that it is
-/// smaller than μ(1 + δ), have each reached 1/β. A right estimator takes about 40 σ²/(δμ)² draws; a factor of
-/// 2 is refuted after some hundred.
+/// smaller than μ(1 + δ), have each reached 1/β = 10⁶. A right estimator takes about 40 σ²/(δμ)² draws; a
+/// factor of 2 is refuted after some hundred.
 ///
 /// The range's upper end may be infinite: then a mean that is too large can be refuted, but no estimator can
 /// be called unbiased.
@@ -66,47 +54,13 @@ pub struct Unbiased {
     high: f64,
     tolerance: f64,
     alpha: f64,
-    beta: f64,
     seed: u64,
     max_draws: u64,
 }
 
-/// A check's verdict, with its mean and settings.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Report {
-    /// The verdict.
-    pub verdict: Verdict,
-    /// The mean claimed.
-    pub truth: f64,
-    /// The estimate from all draws.
-    pub estimate: Estimate,
-    /// The tolerance |δμ|: a smaller difference counts as none.
-    pub tolerance: f64,
-    /// The probability of calling a right estimator biased.
-    pub alpha: f64,
-    /// The seed of all draws.
-    pub seed: u64,
-}
-
-/// The bettors' wealth after some of a check's draws, as natural logarithms, which start at 0.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Look {
-    /// The draws so far.
-    pub draws: u64,
-    /// ln of the average wealth of the two who bet that the mean is larger or smaller than the truth:
-    /// *biased* once it reaches ln(1/α).
-    pub against_truth: f64,
-    /// ln of the wealth of the bettor that the mean is larger than truth − tolerance: a lower mean is
-    /// excluded once it reaches ln(1/β).
-    pub against_too_low: f64,
-    /// ln of the wealth of the bettor that the mean is smaller than truth + tolerance; stays 0 if the range
-    /// has no upper end.
-    pub against_too_high: f64,
-}
-
 impl Unbiased {
-    /// A check for the mean `truth`, for draws in `range`, with δ = 1e-3, α = 1e-12, β = 1e-6, seed 1 and at
-    /// most 10⁹ draws. If the truth is 0, the tolerance is 1e-3 of the range, or of the distance to its lower
+    /// A check for the mean `truth`, for draws in `range`, with δ = 1e-3, α = 1e-12, seed 1 and at most 10⁹
+    /// draws. If the truth is 0, the tolerance is 1e-3 of the range, or of the distance to its lower
     /// end if the upper one is infinite.
     ///
     /// # Errors
@@ -123,7 +77,7 @@ impl Unbiased {
         // smaller if the truth is close to an end of the range, which truth ± tolerance must not reach
         let tolerance = (1e-3 * unit).min(0.5 * (truth - low)).min(0.5 * (high - truth));
         require("the tolerance, a part in a thousand,", tolerance, tolerance > 0.0, "positive")?;
-        Ok(Self { truth, low, high, tolerance, alpha: 1e-12, beta: 1e-6, seed: 1, max_draws: 1_000_000_000 })
+        Ok(Self { truth, low, high, tolerance, alpha: 1e-12, seed: 1, max_draws: 1_000_000_000 })
     }
 
     /// Sets the tolerance to δ times the truth.
@@ -164,16 +118,6 @@ impl Unbiased {
             alpha > 0.0 && alpha < 1.0,
             "strictly between 0 and 1",
         )?;
-        Ok(self)
-    }
-
-    /// Sets β: the mean is wrongly called large enough, or small enough, with probability at most β each.
-    ///
-    /// # Errors
-    /// If β is not strictly between 0 and 1.
-    pub fn beta(mut self, beta: f64) -> Result<Self> {
-        self.beta =
-            require("the error probability β", beta, beta > 0.0 && beta < 1.0, "strictly between 0 and 1")?;
         Ok(self)
     }
 
@@ -246,8 +190,8 @@ impl Unbiased {
                         against_too_low: up_low,
                         against_too_high: down_high,
                     });
-                    above |= up_low >= -self.beta.ln();
-                    below |= self.high.is_finite() && down_high >= -self.beta.ln();
+                    above |= up_low >= -BETA.ln();
+                    below |= self.high.is_finite() && down_high >= -BETA.ln();
                     if two_sided >= -self.alpha.ln() {
                         return Ok(self.report(Verdict::Biased, estimate));
                     }
@@ -336,7 +280,7 @@ impl Unbiased {
     /// The draws after which to give up: twice what a right estimator of this variance needs in all but one
     /// of a million runs.
     fn most_useful_draws(&self, estimate: &Estimate) -> u64 {
-        let bound = -self.beta.ln() + 10f64.ln();
+        let bound = -BETA.ln() + 10f64.ln();
         let deviations = (2.0 * bound).sqrt() + 7.0;
         // not by the variance, which may overflow
         let deviation = estimate.std_error().unwrap_or(0.0) * (estimate.draws() as f64).sqrt();
@@ -349,6 +293,9 @@ impl Unbiased {
         (draws.ceil() as u64).min(self.max_draws)
     }
 }
+
+/// The probability that a mean is wrongly called large enough, or small enough.
+const BETA: f64 = 1e-6;
 
 /// The most draws between two looks at the wealth.
 const LEAF: usize = 256;
@@ -364,47 +311,6 @@ const MOST_BLOCKS: u64 = 64;
 struct Leaf {
     estimate: Estimate,
     growths: [Growth; 4],
-}
-
-impl Report {
-    /// The mean divided by the truth, with its std error.
-    pub fn ratio(&self) -> (f64, f64) {
-        let std_error = self.estimate.std_error().unwrap_or(f64::INFINITY);
-        (self.estimate.mean() / self.truth, std_error / self.truth.abs())
-    }
-}
-
-/// The verdict in a sentence.
-impl fmt::Display for Report {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (truth, estimate, draws) = (self.truth, self.estimate, self.estimate.draws());
-        match self.verdict {
-            Verdict::Unbiased => {
-                write!(
-                    f,
-                    "unbiased within {:.1e}: {estimate} after {draws} draws, the truth is {truth}",
-                    self.tolerance
-                )
-            }
-            Verdict::Biased => {
-                let (ratio, error) = self.ratio();
-                write!(
-                    f,
-                    "biased: {estimate} after {draws} draws, {ratio:.3} ± {error:.3} times the truth \
-                     {truth}; a right estimator would be called biased with probability {:.0e} at most",
-                    self.alpha
-                )
-            }
-            Verdict::Undecided => {
-                write!(
-                    f,
-                    "undecided after {draws} draws: {estimate}, the truth is {truth} and the tolerance is \
-                     {:.1e}",
-                    self.tolerance
-                )
-            }
-        }
-    }
 }
 
 #[cfg(test)]

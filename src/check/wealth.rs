@@ -6,6 +6,8 @@
 //! made in parallel, and the wealth is the mean of theirs. (Waudby-Smith & Ramdas 2024, "Estimating means of
 //! bounded random variables by betting".)
 
+use crate::float::two_sum;
+
 /// How many fractions are bet in parallel.
 pub(super) const BETS: usize = 10;
 
@@ -67,44 +69,25 @@ fn product(ratios: &[f64], fraction: f64) -> f64 {
     lanes.iter().product()
 }
 
-/// The wealth of each bet so far.
+/// The logarithm of each bet's wealth so far, with the rounding error of its sum.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Wealth {
-    logs: [Sum; BETS],
+    logs: [(f64, f64); BETS],
 }
 
 impl Wealth {
     pub fn grow(&mut self, growth: &Growth) {
-        for (log, growth) in self.logs.iter_mut().zip(growth) {
-            log.add(*growth);
+        for ((log, lost), growth) in self.logs.iter_mut().zip(growth) {
+            let (sum, error) = two_sum(*log, *growth);
+            (*log, *lost) = (sum, *lost + error);
         }
     }
 
     /// ln of the mean wealth of the bets.
     pub fn log_mean(&self) -> f64 {
-        let logs = self.logs.map(|log| log.value());
+        let logs = self.logs.map(|(log, lost)| log + lost);
         let largest = logs.into_iter().fold(f64::NEG_INFINITY, f64::max);
         let sum: f64 = logs.into_iter().map(|log| (log - largest).exp()).sum();
         largest + (sum / BETS as f64).ln()
-    }
-}
-
-/// A compensated sum (Neumaier 1974).
-#[derive(Debug, Clone, Copy, Default)]
-struct Sum {
-    sum: f64,
-    lost: f64,
-}
-
-impl Sum {
-    fn add(&mut self, x: f64) {
-        let sum = self.sum + x;
-        let (large, small) = if self.sum.abs() >= x.abs() { (self.sum, x) } else { (x, self.sum) };
-        self.lost += (large - sum) + small;
-        self.sum = sum;
-    }
-
-    fn value(self) -> f64 {
-        self.sum + self.lost
     }
 }

@@ -1,11 +1,11 @@
 //! Mistakes in sampling the exponential distribution.
 
+use std::f64::consts::LN_2;
 use std::fmt;
 use std::sync::LazyLock;
 
 use super::Exponential;
-use crate::check::{About, Exercise, Given, Mistake, Problem, Words};
-use crate::stream::Stream;
+use crate::check::{About, Exercise, Given, Listed, Problem};
 
 /// The problem of sampling the exponential distribution with rate λ. An attempt returns one sample per draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,8 +40,7 @@ static PROBLEMS: [Samples; 6] = [
 impl Problem for Samples {
     fn exercise() -> &'static Exercise {
         static EXERCISE: LazyLock<Exercise> = LazyLock::new(|| {
-            let right = |p: &Samples, rng: &mut Stream| -(1.0 - rng.uniform()).ln() / p.rate;
-            Exercise::new(ABOUT, &[right], mistakes())
+            Exercise::new(ABOUT, &[|p: &Samples, rng| -(1.0 - rng.uniform()).ln() / p.rate], MISTAKES)
         });
         &EXERCISE
     }
@@ -72,7 +71,8 @@ impl Problem for Samples {
     }
 
     fn given(&self) -> Vec<(&'static str, Given)> {
-        vec![("rate", Given::Number(self.rate)), ("average", Given::Word(self.statistic.word()))]
+        let [statistic, _] = self.statistic.names();
+        vec![("rate", Given::Number(self.rate)), ("average", Given::Word(statistic))]
     }
 
     fn factors(&self) -> Vec<(&'static str, f64)> {
@@ -81,22 +81,19 @@ impl Problem for Samples {
 }
 
 impl Statistic {
-    fn word(self) -> &'static str {
+    /// For programs, and for people.
+    fn names(self) -> [&'static str; 2] {
         match self {
-            Self::Mean => "x",
-            Self::Cdf => "cdf",
-            Self::Capped => "capped",
+            Self::Mean => ["x", "X"],
+            Self::Cdf => ["cdf", "F(X)"],
+            Self::Capped => ["capped", "min(X, 2/λ)"],
         }
     }
 }
 
 impl fmt::Display for Samples {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let statistic = match self.statistic {
-            Statistic::Mean => "X",
-            Statistic::Cdf => "F(X)",
-            Statistic::Capped => "min(X, 2/λ)",
-        };
+        let [_, statistic] = self.statistic.names();
         write!(f, "mean of {statistic}, λ = {}", self.rate)
     }
 }
@@ -109,82 +106,51 @@ const ABOUT: About = About {
            itself; cdf: F(X) = 1 − e^(−λX), or 0 where X < 0; capped: X, but at least 0 and at most 2/λ.",
 };
 
-/// A wrong sample: a function of the rate and one uniform number.
-fn of(
-    id: &'static str,
-    name: &'static str,
-    formula: &'static str,
-    mend: &'static str,
-    x: fn(f64, f64) -> f64,
-) -> Mistake {
-    let words = Words { id, question: "1.1", name, formula, mend };
-    Mistake::new(words, move |p: &Samples, rng| x(p.rate, rng.uniform()))
-}
-
-/// A mistake that returns the same value in every draw.
-fn fixed(
-    id: &'static str,
-    name: &'static str,
-    formula: &'static str,
-    mend: &'static str,
-    x: fn(f64) -> f64,
-) -> Mistake {
-    let words = Words { id, question: "1.1", name, formula, mend };
-    Mistake::new(words, move |p: &Samples, _| x(p.rate))
-}
-
 #[rustfmt::skip] // a list to be read
-fn mistakes() -> Vec<Mistake> {
-    use std::f64::consts::LN_2;
-    let divide = "solve 1 − e^(−λx) = u for x: divide by λ";
-    let log = "e^(−λx) is undone by the natural logarithm";
-    let invert = "solve F(x) = u for x: a sample is F⁻¹(U)";
-    let vary = "put U into F⁻¹: a sample has to vary";
-    let sign = "the logarithm of 1 − U is negative: −ln(1 − U)/λ";
-    let tail = "with U in [0, 1) the logarithm is finite: no ε is needed";
-    let words = |id, name, formula, mend| Words { id, question: "1.1", name, formula, mend };
-    vec![
-        of("times-rate", "multiplied by λ", "−λ ln(1 − U)", divide, |rate, u| -rate * (1.0 - u).ln()),
-        of("no-rate", "λ forgotten", "−ln(1 − U)", divide, |_, u| -(1.0 - u).ln()),
-        of(
-            "rate-squared",
-            "divided by λ²",
-            "−ln(1 − U)/λ²",
-            "the mean is 1/λ; 1/λ² is the variance",
-            |rate, u| -(1.0 - u).ln() / (rate * rate),
-        ),
-        of("root-rate", "divided by √λ", "−ln(1 − U)/√λ", divide, |rate, u| -(1.0 - u).ln() / rate.sqrt()),
-        of("log10", "log base 10", "−log₁₀(1 − U)/λ", log, |rate, u| -(1.0 - u).log10() / rate),
-        of("log2", "log base 2", "−log₂(1 − U)/λ", log, |rate, u| -(1.0 - u).log2() / rate),
-        of("sign", "the sign forgotten", "ln(1 − U)/λ", sign, |rate, u| (1.0 - u).ln() / rate),
-        fixed("median", "the median returned", "ln 2/λ", vary, |rate| LN_2 / rate),
-        fixed("mean", "the mean returned", "1/λ", vary, |rate| 1.0 / rate),
-        of("pdf-read", "p read at U", "λ e^(−λU)", invert, |rate, u| rate * (-rate * u).exp()),
-        of("cdf-read", "F read at U instead of inverted", "1 − e^(−λU)", invert,
-            |rate, u| -(-rate * u).exp_m1()),
-        of("survival", "the survival function read at U", "e^(−λU)", invert, |rate, u| (-rate * u).exp()),
-        of("uniform", "uniform samples of length 1/λ", "U/λ", invert, |rate, u| u / rate),
-        of("uniform-mean", "uniform samples with the right mean", "2U/λ", invert, |rate, u| 2.0 * u / rate),
-        of("box-muller", "the square root of Box and Muller", "√(−2 ln(1 − U))/λ",
-            "that is for normal samples", |rate, u| (-2.0 * (1.0 - u).ln()).sqrt() / rate),
-        Mistake::new(
-            words(
-                "two-logs",
-                "the logarithm of two uniform numbers",
-                "−ln(U V)/λ",
-                "one U a sample: the sum of two samples has density λ²x e^(−λx)",
-            ),
-            |p: &Samples, rng| -((1.0 - rng.uniform()) * (1.0 - rng.uniform())).ln() / p.rate,
-        ),
-        of("floor", "1 − U kept above 1e-3 under the logarithm", "−ln max(1 − U, 1e-3)/λ", tail,
-            |rate, u| -(1.0 - u).max(1e-3).ln() / rate),
-        of("floor-tenth", "1 − U kept above 0.1", "−ln max(1 − U, 0.1)/λ", tail,
-            |rate, u| -(1.0 - u).max(0.1).ln() / rate),
-        of("one-plus", "ln(1 + U) for −ln(1 − U)", "ln(1 + U)/λ",
-            "1 − F(x) = 1 − u: the minus stays under the logarithm", |rate, u| u.ln_1p() / rate),
-        of("log-below", "divided by the logarithm", "−1/(λ ln(1 − U)), at most 10/λ", divide,
-            |rate, u| (-1.0 / (1.0 - u).ln()).min(10.0) / rate),
-        of("levels", "U on 2¹⁵ levels", "U = j/2¹⁵", "take a generator of 53 bits",
-            |rate, u| -(1.0 - (u * 32_768.0).floor() / 32_768.0).ln() / rate),
-    ]
-}
+const MISTAKES: &[Listed<Samples>] = &[
+    (["1.1", "times-rate", "multiplied by λ", "−λ ln(1 − U)", DIVIDE],
+        |p, rng| -p.rate * (1.0 - rng.uniform()).ln()),
+    (["1.1", "no-rate", "λ forgotten", "−ln(1 − U)", DIVIDE], |_, rng| -(1.0 - rng.uniform()).ln()),
+    (["1.1", "rate-squared", "divided by λ²", "−ln(1 − U)/λ²", "the mean is 1/λ; 1/λ² is the variance"],
+        |p, rng| -(1.0 - rng.uniform()).ln() / (p.rate * p.rate)),
+    (["1.1", "root-rate", "divided by √λ", "−ln(1 − U)/√λ", DIVIDE],
+        |p, rng| -(1.0 - rng.uniform()).ln() / p.rate.sqrt()),
+    (["1.1", "log10", "log base 10", "−log₁₀(1 − U)/λ", LOG],
+        |p, rng| -(1.0 - rng.uniform()).log10() / p.rate),
+    (["1.1", "log2", "log base 2", "−log₂(1 − U)/λ", LOG], |p, rng| -(1.0 - rng.uniform()).log2() / p.rate),
+    (["1.1", "sign", "the sign forgotten", "ln(1 − U)/λ", "the logarithm of 1 − U is negative: −ln(1 − U)/λ"],
+        |p, rng| (1.0 - rng.uniform()).ln() / p.rate),
+    (["1.1", "median", "the median returned", "ln 2/λ", VARY], |p, _| LN_2 / p.rate),
+    (["1.1", "mean", "the mean returned", "1/λ", VARY], |p, _| 1.0 / p.rate),
+    (["1.1", "pdf-read", "p read at U", "λ e^(−λU)", INVERT],
+        |p, rng| p.rate * (-p.rate * rng.uniform()).exp()),
+    (["1.1", "cdf-read", "F read at U instead of inverted", "1 − e^(−λU)", INVERT],
+        |p, rng| -(-p.rate * rng.uniform()).exp_m1()),
+    (["1.1", "survival", "the survival function read at U", "e^(−λU)", INVERT],
+        |p, rng| (-p.rate * rng.uniform()).exp()),
+    (["1.1", "uniform", "uniform samples of length 1/λ", "U/λ", INVERT], |p, rng| rng.uniform() / p.rate),
+    (["1.1", "uniform-mean", "uniform samples with the right mean", "2U/λ", INVERT],
+        |p, rng| 2.0 * rng.uniform() / p.rate),
+    (["1.1", "box-muller", "the square root of Box and Muller", "√(−2 ln(1 − U))/λ",
+        "that is for normal samples"],
+        |p, rng| (-2.0 * (1.0 - rng.uniform()).ln()).sqrt() / p.rate),
+    (["1.1", "two-logs", "the logarithm of two uniform numbers", "−ln(U V)/λ",
+        "one U a sample: the sum of two samples has density λ²x e^(−λx)"],
+        |p, rng| -((1.0 - rng.uniform()) * (1.0 - rng.uniform())).ln() / p.rate),
+    (["1.1", "floor", "1 − U kept above 1e-3 under the logarithm", "−ln max(1 − U, 1e-3)/λ", TAIL],
+        |p, rng| -(1.0 - rng.uniform()).max(1e-3).ln() / p.rate),
+    (["1.1", "floor-tenth", "1 − U kept above 0.1", "−ln max(1 − U, 0.1)/λ", TAIL],
+        |p, rng| -(1.0 - rng.uniform()).max(0.1).ln() / p.rate),
+    (["1.1", "one-plus", "ln(1 + U) for −ln(1 − U)", "ln(1 + U)/λ",
+        "1 − F(x) = 1 − u: the minus stays under the logarithm"], |p, rng| rng.uniform().ln_1p() / p.rate),
+    (["1.1", "log-below", "divided by the logarithm", "−1/(λ ln(1 − U)), at most 10/λ", DIVIDE],
+        |p, rng| (-1.0 / (1.0 - rng.uniform()).ln()).min(10.0) / p.rate),
+    (["1.1", "levels", "U on 2¹⁵ levels", "U = j/2¹⁵", "take a generator of 53 bits"],
+        |p, rng| -(1.0 - (rng.uniform() * 32_768.0).floor() / 32_768.0).ln() / p.rate),
+];
+
+const DIVIDE: &str = "solve 1 − e^(−λx) = u for x: divide by λ";
+const LOG: &str = "e^(−λx) is undone by the natural logarithm";
+const INVERT: &str = "solve F(x) = u for x: a sample is F⁻¹(U)";
+const VARY: &str = "put U into F⁻¹: a sample has to vary";
+const TAIL: &str = "with U in [0, 1) the logarithm is finite: no ε is needed";

@@ -5,7 +5,7 @@ use std::fmt;
 use std::sync::LazyLock;
 
 use super::Lambertian;
-use crate::check::{About, Exercise, Given, Mistake, Problem, Words};
+use crate::check::{About, Exercise, Given, Listed, Problem};
 use crate::error::Result;
 use crate::lambertian::hemisphere::Direction;
 use crate::stream::Stream;
@@ -39,6 +39,20 @@ pub enum Sky {
     Grazing,
 }
 
+impl Sky {
+    /// For programs, and for people.
+    fn names(self) -> [&'static str; 2] {
+        match self {
+            Self::Even => ["one", "1"],
+            Self::Cosine => ["cos", "cos θ"],
+            Self::CosineSquared => ["cos2", "cos² θ"],
+            Self::HalfLit => ["half", "2 in half the sky"],
+            Self::Lobe => ["lobe", "4 in a lobe"],
+            Self::Grazing => ["grazing", "16 at grazing angles"],
+        }
+    }
+}
+
 impl Reflection {
     /// L_i from this direction.
     pub fn light(&self, direction: &Direction) -> f64 {
@@ -55,6 +69,57 @@ impl Reflection {
             Sky::Grazing => lit(cos < 0.25, 16.0),
         }
     }
+
+    /// A draw ρ w(cos θ) L_i, with cos θ a function of U and φ = 2πV.
+    fn weighed(&self, rng: &mut Stream, cos_theta: fn(f64) -> f64, weight: fn(f64) -> f64) -> f64 {
+        self.turned(rng, cos_theta, |_, v| v, weight)
+    }
+
+    /// The same with φ/2π a function of U and V.
+    fn turned(
+        &self,
+        rng: &mut Stream,
+        cos_theta: fn(f64) -> f64,
+        turns: fn(f64, f64) -> f64,
+        weight: fn(f64) -> f64,
+    ) -> f64 {
+        let (u, v) = (rng.uniform(), rng.uniform());
+        let cos = cos_theta(u);
+        let direction = Direction::polar(cos, TAU * turns(u, v));
+        direction.map_or(f64::NAN, |w| self.albedo * weight(cos) * self.light(&w))
+    }
+
+    /// A draw from three uniform numbers.
+    fn spatial(
+        &self,
+        rng: &mut Stream,
+        way: fn([f64; 3]) -> Result<Direction>,
+        weight: fn(f64) -> f64,
+    ) -> f64 {
+        let direction = way([rng.uniform(), rng.uniform(), rng.uniform()]);
+        // the origin itself, drawn once in 2¹⁵⁹ times, has no direction
+        direction.map_or(0.0, |w| self.albedo * weight(w.cos_theta()) * self.light(&w))
+    }
+}
+
+/// The draw from uniform directions, 2ρ L_i cos θ.
+fn by_uniform(p: &Reflection, rng: &mut Stream) -> f64 {
+    p.weighed(rng, uniform, |cos| 2.0 * cos)
+}
+
+/// cos θ for uniform directions.
+fn uniform(u: f64) -> f64 {
+    1.0 - u
+}
+
+/// cos θ for directions in proportion to it.
+fn cosine(u: f64) -> f64 {
+    (1.0 - u).sqrt()
+}
+
+/// cos θ with θ uniform in [0, π/2].
+fn uniform_angle(u: f64) -> f64 {
+    (FRAC_PI_2 * u).cos().max(0.0)
 }
 
 static PROBLEMS: [Reflection; 7] = [
@@ -71,13 +136,8 @@ static PROBLEMS: [Reflection; 7] = [
 impl Problem for Reflection {
     fn exercise() -> &'static Exercise {
         static EXERCISE: LazyLock<Exercise> = LazyLock::new(|| {
-            let uniform = |p: &Reflection, rng: &mut Stream| {
-                toward(uniform(rng.uniform()), rng.uniform(), |w| 2.0 * p.albedo * p.light(w) * w.cos_theta())
-            };
-            let cosine = |p: &Reflection, rng: &mut Stream| {
-                toward(cosine(rng.uniform()), rng.uniform(), |w| p.albedo * p.light(w))
-            };
-            Exercise::new(ABOUT, &[uniform, cosine], mistakes())
+            let by_cosine = |p: &Reflection, rng: &mut Stream| p.weighed(rng, cosine, |_| 1.0);
+            Exercise::new(ABOUT, &[by_uniform, by_cosine], MISTAKES)
         });
         &EXERCISE
     }
@@ -97,14 +157,7 @@ impl Problem for Reflection {
     }
 
     fn given(&self) -> Vec<(&'static str, Given)> {
-        let sky = match self.sky {
-            Sky::Even => "one",
-            Sky::Cosine => "cos",
-            Sky::CosineSquared => "cos2",
-            Sky::HalfLit => "half",
-            Sky::Lobe => "lobe",
-            Sky::Grazing => "grazing",
-        };
+        let [sky, _] = self.sky.names();
         vec![("albedo", Given::Number(self.albedo)), ("light", Given::Word(sky))]
     }
 
@@ -115,15 +168,8 @@ impl Problem for Reflection {
 
 impl fmt::Display for Reflection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let sky = match self.sky {
-            Sky::Even => "L = 1",
-            Sky::Cosine => "L = cos θ",
-            Sky::CosineSquared => "L = cos² θ",
-            Sky::HalfLit => "L = 2 in half the sky",
-            Sky::Lobe => "L = 4 in a lobe",
-            Sky::Grazing => "L = 16 at grazing angles",
-        };
-        write!(f, "{sky}, ρ = {}", self.albedo)
+        let [_, sky] = self.sky.names();
+        write!(f, "L = {sky}, ρ = {}", self.albedo)
     }
 }
 
@@ -137,182 +183,99 @@ const ABOUT: About = About {
            1/2, else 0;\ngrazing: 16 where z < 1/4, else 0. All are 0 where z < 0.",
 };
 
-type Text = &'static str;
-
-const fn words(question: Text, id: Text, name: Text, formula: Text, mend: Text) -> Words {
-    Words { id, question, name, formula, mend }
-}
-
-/// The value of f for the direction with this cos θ and φ/2π.
-fn toward(cos_theta: f64, turns: f64, f: impl Fn(&Direction) -> f64) -> f64 {
-    Direction::polar(cos_theta, TAU * turns).map_or(f64::NAN, |at| f(&at))
-}
-
-/// cos θ for uniform directions.
-fn uniform(u: f64) -> f64 {
-    1.0 - u
-}
-
-/// cos θ for directions in proportion to it.
-fn cosine(u: f64) -> f64 {
-    (1.0 - u).sqrt()
-}
-
-/// cos θ with θ uniform in [0, π/2].
-fn uniform_angle(u: f64) -> f64 {
-    (FRAC_PI_2 * u).cos().max(0.0)
-}
-
-/// A draw ρ w(cos θ) L_i, with cos θ a function of U and φ = 2πV.
-fn weighed(words: Words, cos_theta: fn(f64) -> f64, weight: fn(f64) -> f64) -> Mistake {
-    turned(words, cos_theta, |_, v| v, weight)
-}
-
-/// The same with φ/2π a function of U and V.
-fn turned(
-    words: Words,
-    cos_theta: fn(f64) -> f64,
-    turns: fn(f64, f64) -> f64,
-    weight: fn(f64) -> f64,
-) -> Mistake {
-    Mistake::new(words, move |p: &Reflection, rng| {
-        let (u, v) = (rng.uniform(), rng.uniform());
-        let cos = cos_theta(u);
-        toward(cos, turns(u, v), |w| p.albedo * weight(cos) * p.light(w))
-    })
-}
-
-/// Cosine directions, but another factor than ρ.
-fn albedo(words: Words, factor: fn(f64) -> f64) -> Mistake {
-    Mistake::new(words, move |p: &Reflection, rng| {
-        toward(cosine(rng.uniform()), rng.uniform(), |w| factor(p.albedo) * p.light(w))
-    })
-}
-
-/// Directions computed from three uniform numbers, with a weight.
-fn spatial(words: Words, direction: fn([f64; 3]) -> Result<Direction>, weight: fn(f64) -> f64) -> Mistake {
-    Mistake::new(words, move |p: &Reflection, rng| {
-        let at = direction([rng.uniform(), rng.uniform(), rng.uniform()]);
-        // the origin itself, drawn once in 2¹⁵⁹ times, has no direction
-        at.map_or(0.0, |w| p.albedo * weight(w.cos_theta()) * p.light(&w))
-    })
-}
-
 #[rustfmt::skip] // a list to be read
-fn mistakes() -> Vec<Mistake> {
-    let pdf = "uniform directions have p = 1/(2π): 2ρ L_i cos θ";
-    let drawn_cosine = "with p = cos θ/π all but ρ L_i cancels";
-    let cos = "the integrand is f_r L_i cos θ: one cos θ";
-    let brdf = "f_r = ρ/π, once";
-    let match_p = "divide by the density that the directions were drawn from";
-    let theta = "uniform over the hemisphere is cos θ uniform in [0, 1], since dω = sin θ dθ dφ";
-    let disc = "a uniform point of the disc has the radius √U: cos θ = √(1 − U)";
-    let phi = "φ = 2πV, with V independent of U";
-    let ball = "add a point *on* the unit sphere to the normal: the sum is in proportion to cos θ";
-    vec![
-        weighed(words("3.4", "pdf-pi", "pdf 1/π for uniform directions", "ρ L cos θ", pdf), uniform, |c| c),
-        weighed(words("3.4", "pdf-sphere", "pdf of the whole sphere, 1/4π", "4ρ L cos θ", pdf), uniform,
-            |c| 4.0 * c),
-        weighed(words("3.4", "no-cos", "cos θ forgotten, uniform directions", "2ρ L", cos), uniform, |_| 2.0),
-        weighed(words("3.5", "no-cos-cosine", "cos θ forgotten, cosine directions", "ρ L/cos θ", cos), cosine,
-            |c| 1.0 / c),
-        weighed(words("3.4", "no-brdf-pi", "1/π of the BRDF forgotten, uniform directions", "2πρ L cos θ",
-            brdf), uniform, |c| TAU * c),
-        weighed(words("3.5", "no-brdf-pi-cosine", "1/π of the BRDF forgotten, cosine directions", "πρ L",
-            brdf), cosine, |_| PI),
-        weighed(words("3.4", "pi-twice", "1/π twice", "2ρ/π L cos θ", brdf), uniform,
-            |c| 2.0 * FRAC_1_PI * c),
-        weighed(words("3.5", "cosine-pdf-no-pi", "the cosine pdf without its 1/π", "ρ/π L", drawn_cosine),
-            cosine, |_| FRAC_1_PI),
-        weighed(words("3.4", "no-pdf", "no division by the pdf, uniform directions", "ρ/π L cos θ", pdf),
-            uniform, |c| FRAC_1_PI * c),
-        weighed(words("3.5", "no-pdf-cosine", "no division by the pdf, cosine directions", "ρ/π L cos θ",
-            drawn_cosine), cosine, |c| FRAC_1_PI * c),
-        weighed(words("3.4", "times-pdf", "multiplied by the pdf, uniform directions", "ρ/(2π²) L cos θ",
-            pdf), uniform, |c| 0.5 * FRAC_1_PI * FRAC_1_PI * c),
-        weighed(words("3.5", "times-pdf-cosine", "multiplied by the pdf, cosine directions", "ρ/π² L cos² θ",
-            drawn_cosine), cosine, |c| FRAC_1_PI * FRAC_1_PI * c * c),
-        weighed(words("3.4", "cos-twice", "cos θ twice", "2ρ L cos² θ", cos), uniform, |c| 2.0 * c * c),
-        weighed(words("3.5", "cos-kept", "cosine directions, cos θ kept", "ρ L cos θ", drawn_cosine), cosine,
-            |c| c),
-        weighed(words("3.5", "uniform-weight", "cosine directions, the uniform weight", "2ρ L cos θ",
-            match_p), cosine, |c| 2.0 * c),
-        weighed(words("3.5", "cosine-weight", "uniform directions, the cosine weight", "ρ L",
-            "draw the directions from cos θ/π: cos θ = √(1 − U)"), uniform, |_| 1.0),
-        weighed(words("3.4", "sin-for-cos", "sin θ for cos θ", "2ρ L sin θ",
-            "θ is the angle to the normal, not to the surface"), uniform, |c| 2.0 * (1.0 - c * c).sqrt()),
-        weighed(words("3.4", "theta-uniform", "θ uniform in [0, π/2]", "θ = πU/2, 2ρ L cos θ", theta),
-            uniform_angle, |c| 2.0 * c),
-        weighed(words("3.2", "no-sin", "sin θ forgotten in the measure", "θ = πU/2, πρ L cos θ", theta),
-            uniform_angle, |c| PI * c),
-        weighed(words("3.5", "disc-radius", "a disc's radius without the root", "sin θ = U, ρ L", disc),
-            |u| (1.0 - u * u).sqrt(), |_| 1.0),
-        weighed(words("3.5", "doubled", "x and y doubled before normalising", "(2x, 2y, z)/|…|, ρ L",
-            "the disc has radius 1, and lifting needs no normalising"),
-            |u| ((1.0 - u) / (1.0 + 3.0 * u)).sqrt(), |_| 1.0),
-        weighed(words("3.5", "u-squared", "cos θ = U²", "cos θ = U², ρ L", disc), |u| (1.0 - u) * (1.0 - u),
-            |_| 1.0),
-        weighed(words("3.4", "clamped-sphere", "directions of the whole sphere, clamped at the horizon",
-            "cos θ in [−1, 1], 2ρ L max(cos θ, 0)", "draw from the hemisphere, or divide by 1/(4π)"),
-            |u| 1.0 - 2.0 * u, |c| 2.0 * c.max(0.0)),
-        weighed(words("4.1", "reversed", "ω_i reversed", "ρ L(−ω)", "ω_i points towards the light"),
-            |u| -cosine(u), |_| 1.0),
-        turned(words("3.5", "half-turn", "φ over half a turn", "φ = πV", phi), cosine, |_, v| 0.5 * v,
-            |_| 1.0),
-        turned(words("3.5", "no-turn", "φ = V, without 2π", "φ = V", phi), cosine, |_, v| v / TAU, |_| 1.0),
-        turned(words("3.5", "same-u", "the same U for θ and φ", "cos θ = √(1 − U), φ = 2πU", phi), cosine,
-            |u, _| u, |_| 1.0),
-        albedo(words("3.3", "no-albedo", "ρ forgotten", "L", "L_r is in proportion to ρ: f_r = ρ/π"),
-            |_| 1.0),
-        albedo(words("3.3", "albedo-squared", "ρ squared", "ρ² L", "the BRDF holds ρ once"), |rho| rho * rho),
-        albedo(words("3.3", "absorbed", "1 − ρ for ρ", "(1 − ρ) L",
-            "ρ is what is reflected, 1 − ρ what is absorbed"), |rho| 1.0 - rho),
-        Mistake::new(
-            words(
-                "3.4",
-                "clamped",
-                "each draw clamped to 1",
-                "min(2ρ L cos θ, 1)",
-                "clamp the final picture, not the draws",
-            ),
-            |p: &Reflection, rng| {
-                let draw = |w: &Direction| 2.0 * p.albedo * p.light(w) * w.cos_theta();
-                toward(uniform(rng.uniform()), rng.uniform(), draw).min(1.0)
-            },
-        ),
-        Mistake::new(
-            words(
-                "4.3",
-                "dark-left-out",
-                "dark directions left out of n",
-                "1/(lit directions) Σ 2ρ L cos θ",
-                "a direction without light is a draw too: it adds 0 and counts in n",
-            ),
-            |p: &Reflection, rng| {
-                let draw = |w: &Direction| 2.0 * p.albedo * p.light(w) * w.cos_theta();
-                let mut tries = (0..1000).map(|_| toward(uniform(rng.uniform()), rng.uniform(), draw));
-                tries.find(|draw| *draw > 0.0).unwrap_or(0.0)
-            },
-        ),
-        spatial(words("3.4", "cube", "points of a cube, normalised", "(x, y, z)/|…| in the cube, 2ρ L cos θ",
-            "reject points outside the ball: a cube's corners get too many directions"),
-            |[u, v, w]| Direction::new(2.0 * u - 1.0, 2.0 * v - 1.0, w), |c| 2.0 * c),
-        spatial(
-            words(
-                "3.5",
-                "in-the-ball",
-                "normal + a point in the unit ball",
-                "p in proportion to cos³ θ, ρ L",
-                ball,
-            ),
-            |[u, v, w]| {
-                let (r, z) = (w.cbrt(), 1.0 - 2.0 * u);
-                let (sin, (y, x)) = ((1.0 - z * z).sqrt(), (TAU * v).sin_cos());
-                Direction::new(r * sin * x, r * sin * y, r * z + 1.0)
-            },
-            |_| 1.0,
-        ),
-        spatial(words("3.5", "in-the-cube", "normal + a point of the cube around it", "ρ L", ball),
-            |[u, v, w]| Direction::new(2.0 * u - 1.0, 2.0 * v - 1.0, 2.0 * w), |_| 1.0),
-    ]
+const MISTAKES: &[Listed<Reflection>] = &[
+    (["3.4", "pdf-pi", "pdf 1/π for uniform directions", "ρ L cos θ", PDF],
+        |p, rng| p.weighed(rng, uniform, |c| c)),
+    (["3.4", "pdf-sphere", "pdf of the whole sphere, 1/4π", "4ρ L cos θ", PDF],
+        |p, rng| p.weighed(rng, uniform, |c| 4.0 * c)),
+    (["3.4", "no-cos", "cos θ forgotten, uniform directions", "2ρ L", COS],
+        |p, rng| p.weighed(rng, uniform, |_| 2.0)),
+    (["3.5", "no-cos-cosine", "cos θ forgotten, cosine directions", "ρ L/cos θ", COS],
+        |p, rng| p.weighed(rng, cosine, |c| 1.0 / c)),
+    (["3.4", "no-brdf-pi", "1/π of the BRDF forgotten, uniform directions", "2πρ L cos θ", BRDF],
+        |p, rng| p.weighed(rng, uniform, |c| TAU * c)),
+    (["3.5", "no-brdf-pi-cosine", "1/π of the BRDF forgotten, cosine directions", "πρ L", BRDF],
+        |p, rng| p.weighed(rng, cosine, |_| PI)),
+    (["3.4", "pi-twice", "1/π twice", "2ρ/π L cos θ", BRDF],
+        |p, rng| p.weighed(rng, uniform, |c| 2.0 * FRAC_1_PI * c)),
+    (["3.5", "cosine-pdf-no-pi", "the cosine pdf without its 1/π", "ρ/π L", DRAWN_COSINE],
+        |p, rng| p.weighed(rng, cosine, |_| FRAC_1_PI)),
+    (["3.4", "no-pdf", "no division by the pdf, uniform directions", "ρ/π L cos θ", PDF],
+        |p, rng| p.weighed(rng, uniform, |c| FRAC_1_PI * c)),
+    (["3.5", "no-pdf-cosine", "no division by the pdf, cosine directions", "ρ/π L cos θ", DRAWN_COSINE],
+        |p, rng| p.weighed(rng, cosine, |c| FRAC_1_PI * c)),
+    (["3.4", "times-pdf", "multiplied by the pdf, uniform directions", "ρ/(2π²) L cos θ", PDF],
+        |p, rng| p.weighed(rng, uniform, |c| 0.5 * FRAC_1_PI * FRAC_1_PI * c)),
+    (["3.5", "times-pdf-cosine", "multiplied by the pdf, cosine directions", "ρ/π² L cos² θ", DRAWN_COSINE],
+        |p, rng| p.weighed(rng, cosine, |c| FRAC_1_PI * FRAC_1_PI * c * c)),
+    (["3.4", "cos-twice", "cos θ twice", "2ρ L cos² θ", COS],
+        |p, rng| p.weighed(rng, uniform, |c| 2.0 * c * c)),
+    (["3.5", "cos-kept", "cosine directions, cos θ kept", "ρ L cos θ", DRAWN_COSINE],
+        |p, rng| p.weighed(rng, cosine, |c| c)),
+    (["3.5", "uniform-weight", "cosine directions, the uniform weight", "2ρ L cos θ",
+        "divide by the density that the directions were drawn from"],
+        |p, rng| p.weighed(rng, cosine, |c| 2.0 * c)),
+    (["3.5", "cosine-weight", "uniform directions, the cosine weight", "ρ L",
+        "draw the directions from cos θ/π: cos θ = √(1 − U)"], |p, rng| p.weighed(rng, uniform, |_| 1.0)),
+    (["3.4", "sin-for-cos", "sin θ for cos θ", "2ρ L sin θ",
+        "θ is the angle to the normal, not to the surface"],
+        |p, rng| p.weighed(rng, uniform, |c| 2.0 * (1.0 - c * c).sqrt())),
+    (["3.4", "theta-uniform", "θ uniform in [0, π/2]", "θ = πU/2, 2ρ L cos θ", THETA],
+        |p, rng| p.weighed(rng, uniform_angle, |c| 2.0 * c)),
+    (["3.2", "no-sin", "sin θ forgotten in the measure", "θ = πU/2, πρ L cos θ", THETA],
+        |p, rng| p.weighed(rng, uniform_angle, |c| PI * c)),
+    (["3.5", "disc-radius", "a disc's radius without the root", "sin θ = U, ρ L", DISC],
+        |p, rng| p.weighed(rng, |u| (1.0 - u * u).sqrt(), |_| 1.0)),
+    (["3.5", "doubled", "x and y doubled before normalising", "(2x, 2y, z)/|…|, ρ L",
+        "the disc has radius 1, and lifting needs no normalising"],
+        |p, rng| p.weighed(rng, |u| ((1.0 - u) / (1.0 + 3.0 * u)).sqrt(), |_| 1.0)),
+    (["3.5", "u-squared", "cos θ = U²", "cos θ = U², ρ L", DISC],
+        |p, rng| p.weighed(rng, |u| (1.0 - u) * (1.0 - u), |_| 1.0)),
+    (["3.4", "clamped-sphere", "directions of the whole sphere, clamped at the horizon",
+        "cos θ in [−1, 1], 2ρ L max(cos θ, 0)", "draw from the hemisphere, or divide by 1/(4π)"],
+        |p, rng| p.weighed(rng, |u| 1.0 - 2.0 * u, |c| 2.0 * c.max(0.0))),
+    (["4.1", "reversed", "ω_i reversed", "ρ L(−ω)", "ω_i points towards the light"],
+        |p, rng| p.weighed(rng, |u| -cosine(u), |_| 1.0)),
+    (["3.5", "half-turn", "φ over half a turn", "φ = πV", PHI],
+        |p, rng| p.turned(rng, cosine, |_, v| 0.5 * v, |_| 1.0)),
+    (["3.5", "no-turn", "φ = V, without 2π", "φ = V", PHI],
+        |p, rng| p.turned(rng, cosine, |_, v| v / TAU, |_| 1.0)),
+    (["3.5", "same-u", "the same U for θ and φ", "cos θ = √(1 − U), φ = 2πU", PHI],
+        |p, rng| p.turned(rng, cosine, |u, _| u, |_| 1.0)),
+    (["3.3", "no-albedo", "ρ forgotten", "L", "L_r is in proportion to ρ: f_r = ρ/π"],
+        |p, rng| Reflection { albedo: 1.0, ..*p }.weighed(rng, cosine, |_| 1.0)),
+    (["3.3", "albedo-squared", "ρ squared", "ρ² L", "the BRDF holds ρ once"],
+        |p, rng| p.albedo * p.weighed(rng, cosine, |_| 1.0)),
+    (["3.3", "absorbed", "1 − ρ for ρ", "(1 − ρ) L", "ρ is what is reflected, 1 − ρ what is absorbed"],
+        |p, rng| Reflection { albedo: 1.0 - p.albedo, ..*p }.weighed(rng, cosine, |_| 1.0)),
+    (["3.4", "clamped", "each draw clamped to 1", "min(2ρ L cos θ, 1)",
+        "clamp the final picture, not the draws"],
+        |p, rng| by_uniform(p, rng).min(1.0)),
+    (["4.3", "dark-left-out", "dark directions left out of n", "1/(lit directions) Σ 2ρ L cos θ",
+        "a direction without light is a draw too: it adds 0 and counts in n"],
+        |p, rng| (0..1000).map(|_| by_uniform(p, rng)).find(|draw| *draw > 0.0).unwrap_or(0.0)),
+    (["3.4", "cube", "points of a cube, normalised", "(x, y, z)/|…| in the cube, 2ρ L cos θ",
+        "reject points outside the ball: a cube's corners get too many directions"],
+        |p, rng| p.spatial(rng, |[u, v, w]| Direction::new(2.0 * u - 1.0, 2.0 * v - 1.0, w), |c| 2.0 * c)),
+    (["3.5", "in-the-ball", "normal + a point in the unit ball", "p in proportion to cos³ θ, ρ L", BALL],
+        |p, rng| p.spatial(rng, above_the_ball, |_| 1.0)),
+    (["3.5", "in-the-cube", "normal + a point of the cube around it", "ρ L", BALL],
+        |p, rng| p.spatial(rng, |[u, v, w]| Direction::new(2.0 * u - 1.0, 2.0 * v - 1.0, 2.0 * w), |_| 1.0)),
+];
+
+/// The direction of the normal plus a uniform point in the unit ball.
+fn above_the_ball([u, v, w]: [f64; 3]) -> Result<Direction> {
+    let (r, z) = (w.cbrt(), 1.0 - 2.0 * u);
+    let (sin, (y, x)) = ((1.0 - z * z).sqrt(), (TAU * v).sin_cos());
+    Direction::new(r * sin * x, r * sin * y, r * z + 1.0)
 }
+
+const PDF: &str = "uniform directions have p = 1/(2π): 2ρ L_i cos θ";
+const DRAWN_COSINE: &str = "with p = cos θ/π all but ρ L_i cancels";
+const COS: &str = "the integrand is f_r L_i cos θ: one cos θ";
+const BRDF: &str = "f_r = ρ/π, once";
+const THETA: &str = "uniform over the hemisphere is cos θ uniform in [0, 1], since dω = sin θ dθ dφ";
+const DISC: &str = "a uniform point of the disc has the radius √U: cos θ = √(1 − U)";
+const PHI: &str = "φ = 2πV, with V independent of U";
+const BALL: &str = "add a point *on* the unit sphere to the normal: the sum is in proportion to cos θ";

@@ -10,7 +10,7 @@ use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 
 use super::way::{BY_CHANCE, GOES_ON, Hidden, RIGHT, Spot, TRIES, Way};
-use crate::check::{About, Exercise, Given, Mistake, Problem, Words};
+use crate::check::{About, Exercise, Given, Listed, Problem};
 use crate::lambertian::hemisphere::Hemisphere;
 use crate::paths::room::{BoxRoom, Scene};
 use crate::stream::Stream;
@@ -28,6 +28,11 @@ impl LightOfPaths {
     /// The numbers of bounces that count: `2..=2` is exactly two, `0..=3` is up to three.
     pub fn bounces(&self) -> RangeInclusive<u32> {
         self.first..=self.last
+    }
+
+    /// The right estimator for other numbers of bounces.
+    fn counting(&self, first: u32, last: u32, rng: &mut Stream) -> f64 {
+        RIGHT.draw(&Self { first, last, ..*self }, rng)
     }
 
     /// The radiance after k bounces, where it is a closed form or an integral of one.
@@ -80,9 +85,8 @@ static PROBLEMS: LazyLock<Vec<LightOfPaths>> = LazyLock::new(|| {
 
 impl Problem for LightOfPaths {
     fn exercise() -> &'static Exercise {
-        static EXERCISE: LazyLock<Exercise> = LazyLock::new(|| {
-            Exercise::new(ABOUT, &[|p: &LightOfPaths, rng: &mut Stream| RIGHT.draw(p, rng)], mistakes())
-        });
+        static EXERCISE: LazyLock<Exercise> =
+            LazyLock::new(|| Exercise::new(ABOUT, &[|p: &LightOfPaths, rng| RIGHT.draw(p, rng)], MISTAKES));
         &EXERCISE
     }
 
@@ -155,125 +159,106 @@ const ABOUT: About = About {
            itself emits.",
 };
 
-/// The right estimator with one change.
-fn followed([question, id, name, formula, mend]: [&'static str; 5], way: Way) -> Mistake {
-    let words = Words { id, question, name, formula, mend };
-    Mistake::new(words, move |p: &LightOfPaths, rng| way.draw(p, rng))
+/// A light found by chance, of paths that find it.
+fn some_light(p: &LightOfPaths, rng: &mut Stream) -> f64 {
+    let scene = p.room.scene();
+    if p.first == p.last && scene.light_half_width > 0.0 {
+        // each path that finds the light contributes the same, so none has to be traced
+        return scene.radiance * p.room.albedo(&p.room.point()) * scene.wall_albedo.powi(p.last as i32 - 1);
+    }
+    let mut tries = (0..TRIES).map(|_| BY_CHANCE.draw(p, rng));
+    tries.find(|light| *light > 0.0).unwrap_or(0.0)
 }
 
 #[rustfmt::skip] // a list to be read
-fn mistakes() -> Vec<Mistake> {
-    let area = "a point of the light has density 1/A: divide by it";
-    let turn = "dω = cos θ′ dA/r²: sampling an area takes all three";
-    let cosine = "cos θ is the surface's, once for every light sample";
-    let n = "divide by all n draws: one that finds nothing adds 0";
-    let direction = "a bounce weighs f_r cos θ/p(ω), with the p that ω was drawn from";
-    let product = "the throughput is the product of all weights so far";
-    let vertices = "k counts the vertices between light and eye";
-    let emits = "every vertex that counts adds its L_e times the throughput";
-    let chance = "end a path at random, and divide by the probability of going on";
-    let sampled =
-        |id, name, formula, mend, sample| followed(["4.3", id, name, formula, mend], Way { sample, ..RIGHT });
-    let counted = |question, id, name, formula, mend, counted| {
-        followed([question, id, name, formula, mend], Way { counted, ..RIGHT })
-    };
-    let way = |id, name, formula, mend, way| followed(["4.3", id, name, formula, mend], way);
-    let bounce = |id, name, formula, directions, weight| {
-        way(id, name, formula, direction, Way { directions, weight, ..RIGHT })
-    };
-    let ended = |id, name, formula, way| followed(["5", id, name, formula, chance], way);
-    vec![
-        sampled("no-area", "the light's area forgotten", "f_r L cos θ cos θ′/r²", area,
-            |s| s.here * s.there / (s.r * s.r)),
-        sampled("times-density", "multiplied by the light's density", "f_r L cos θ cos θ′/(r² A)", area,
-            |s| s.here * s.there / (s.r * s.r * s.area)),
-        sampled("half-width", "the light's half-width for its width", "A = w²",
-            "A is the square of the width, twice the half-width",
-            |s| 0.25 * s.area * s.here * s.there / (s.r * s.r)),
-        sampled("no-light-cos", "the light's cosine forgotten", "f_r L cos θ A/r²", turn,
-            |s| s.here * s.area / (s.r * s.r)),
-        sampled("r", "r for r²", "f_r L cos θ cos θ′ A/r", turn, |s| s.here * s.there * s.area / s.r),
-        sampled("no-r", "r² forgotten", "f_r L cos θ cos θ′ A", turn, |s| s.here * s.there * s.area),
-        sampled("no-cos", "the surface's cosine forgotten at the light sample", "f_r L cos θ′ A/r²", cosine,
-            |s| s.there * s.area / (s.r * s.r)),
-        sampled("cos-twice", "the surface's cosine twice at the light sample", "f_r L cos² θ cos θ′ A/r²",
-            cosine, |s| s.here * s.here * s.there * s.area / (s.r * s.r)),
-        sampled("neither-cos", "both cosines forgotten at the light sample", "f_r L A/r²", turn,
-            |s| s.area / (s.r * s.r)),
-        way("middle", "the light's middle for every sample", "y = (0, 0, 4)",
-            "draw a point of the light for every path", Way { spot: Spot::Middle, ..RIGHT }),
-        way("same-numbers", "the same random numbers for light and directions", "one (U, V) a path",
-            "directions and light samples take numbers of their own", Way { spot: Spot::Reused, ..RIGHT }),
-        way("occlusion", "occlusion ignored", "V = 1", "a light sample that the cube hides adds 0",
-            Way { hidden: Hidden::Lit, ..RIGHT }),
-        way("hidden-left-out", "hidden light samples left out of n", "divided by the visible ones", n,
-            Way { hidden: Hidden::Redrawn, ..RIGHT }),
-        Mistake::new(
-            Words {
-                id: "dark-left-out",
-                question: "4.3",
-                name: "rays without light left out of n",
-                formula: "divided by those that found it",
-                mend: n,
-            },
-            |p: &LightOfPaths, rng| {
-                let scene = p.room.scene();
-                if p.first == p.last && scene.light_half_width > 0.0 {
-                    // each path that finds the light contributes the same, so none has to be traced
-                    return scene.radiance
-                        * p.room.albedo(&p.room.point())
-                        * scene.wall_albedo.powi(p.last as i32 - 1);
-                }
-                let mut tries = (0..TRIES).map(|_| BY_CHANCE.draw(p, rng));
-                tries.find(|light| *light > 0.0).unwrap_or(0.0)
-            },
-        ),
-        way("counted-twice", "the light found by chance and sampled", "both added",
-            "where the light is sampled, a ray that hits it adds nothing",
-            Way { chance: true, ..RIGHT }),
-        way("no-pi-light", "1/π of the BRDF forgotten at the light sample", "ρ L cos θ cos θ′ A/r²",
-            "f_r = ρ/π", Way { last: |albedo, _| PI * albedo, ..RIGHT }),
-        way("no-pi", "1/π of the BRDF forgotten at every bounce", "f_r = ρ", "f_r = ρ/π",
-            Way { last: |albedo, _| PI * albedo, carried: |throughput, albedo, _| throughput * albedo * PI,
-                ..RIGHT }),
-        way("no-last-albedo", "the last vertex's albedo forgotten", "L cos θ cos θ′ A/(π r²)",
-            "the vertex that the light falls on reflects ρ of it, too", Way { last: |_, _| 1.0, ..RIGHT }),
-        way("one-albedo", "p's albedo at every vertex", "ρ(p)ᵏ",
-            "take each vertex's own albedo: a wall's, or the cube's",
-            Way { last: |_, of_p| of_p, carried: |throughput, _, of_p| throughput * of_p, ..RIGHT }),
-        way("no-throughput", "the throughput never multiplied", "Σ L_e", product,
-            Way { carried: |throughput, _, _| throughput, ..RIGHT }),
-        way("replaced", "the throughput replaced, not multiplied", "throughput = ρ", product,
-            Way { carried: |_, albedo, _| albedo, ..RIGHT }),
-        way("mirror", "a mirror bounce for a diffuse one", "ω = reflected ray at p_j",
-            "a diffuse surface sends light everywhere: draw ω anew at every vertex",
-            Way { mirror: true, ..BY_CHANCE }),
-        bounce("uniform-no-cos", "cos θ forgotten, uniform directions", "f_r 2π a bounce",
-            Hemisphere::Uniform, |_| 2.0),
-        bounce("cosine-weight", "uniform directions, the cosine weight", "ρ a bounce", Hemisphere::Uniform,
-            |_| 1.0),
-        bounce("uniform-weight", "cosine directions, the uniform weight", "2ρ cos θ a bounce",
-            Hemisphere::Cosine, |cos| 2.0 * cos),
-        bounce("cos-kept", "cosine directions, cos θ kept", "ρ cos θ a bounce", Hemisphere::Cosine,
-            |cos| cos),
-        counted("4.2", "one-more", "one bounce too many", "k + 1", vertices,
-            |[first, last]| { if first == last { [last + 1, last + 1] } else { [first, last + 1] } }),
-        counted("4.2", "one-less", "one bounce too few", "k − 1", vertices, |[first, last]| {
-            let last = last.saturating_sub(1);
-            [first.min(last), last]
-        }),
-        counted("4.2", "up-to", "all bounces up to k where exactly k are asked for", "Σ to k", vertices,
-            |[_, last]| [0, last]),
-        counted("4.3", "no-first", "the first emission skipped", "Σ from 1", emits,
-            |[first, last]| [first.max(1), last]),
-        counted("4.3", "last-only", "only the last vertex's light counted", "L_K alone", emits,
-            |[_, last]| [last, last]),
-        ended("cutoff", "stops where the throughput is small", "ends below 0.3, no compensation",
-            Way { cutoff: 0.3, ..RIGHT }),
-        ended("roulette-bare", "roulette uncompensated", "goes on with chance 4/5, nothing divided",
-            Way { coin: Some(1.0), ..RIGHT }),
-        followed(["5", "roulette-twice", "roulette compensated twice", "ρ/q² a bounce",
-            "divide by q once for each coin"],
-            Way { coin: Some(1.0 / (GOES_ON * GOES_ON)), ..RIGHT }),
-    ]
-}
+const MISTAKES: &[Listed<LightOfPaths>] = &[
+    (["4.3", "no-area", "the light's area forgotten", "f_r L cos θ cos θ′/r²", AREA],
+        |p, rng| Way { sample: |s| s.here * s.there / (s.r * s.r), ..RIGHT }.draw(p, rng)),
+    (["4.3", "times-density", "multiplied by the light's density", "f_r L cos θ cos θ′/(r² A)", AREA],
+        |p, rng| Way { sample: |s| s.here * s.there / (s.r * s.r * s.area), ..RIGHT }.draw(p, rng)),
+    (["4.3", "half-width", "the light's half-width for its width", "A = w²",
+        "A is the square of the width, twice the half-width"],
+        |p, rng| Way { sample: |s| 0.25 * s.area * s.here * s.there / (s.r * s.r), ..RIGHT }.draw(p, rng)),
+    (["4.3", "no-light-cos", "the light's cosine forgotten", "f_r L cos θ A/r²", TURN],
+        |p, rng| Way { sample: |s| s.here * s.area / (s.r * s.r), ..RIGHT }.draw(p, rng)),
+    (["4.3", "r", "r for r²", "f_r L cos θ cos θ′ A/r", TURN],
+        |p, rng| Way { sample: |s| s.here * s.there * s.area / s.r, ..RIGHT }.draw(p, rng)),
+    (["4.3", "no-r", "r² forgotten", "f_r L cos θ cos θ′ A", TURN],
+        |p, rng| Way { sample: |s| s.here * s.there * s.area, ..RIGHT }.draw(p, rng)),
+    (["4.3", "no-cos", "the surface's cosine forgotten at the light sample", "f_r L cos θ′ A/r²", COSINE],
+        |p, rng| Way { sample: |s| s.there * s.area / (s.r * s.r), ..RIGHT }.draw(p, rng)),
+    (["4.3", "cos-twice", "the surface's cosine twice at the light sample", "f_r L cos² θ cos θ′ A/r²",
+        COSINE],
+        |p, rng| Way { sample: |s| s.here * s.here * s.there * s.area / (s.r * s.r), ..RIGHT }.draw(p, rng)),
+    (["4.3", "neither-cos", "both cosines forgotten at the light sample", "f_r L A/r²", TURN],
+        |p, rng| Way { sample: |s| s.area / (s.r * s.r), ..RIGHT }.draw(p, rng)),
+    (["4.3", "middle", "the light's middle for every sample", "y = (0, 0, 4)",
+        "draw a point of the light for every path"],
+        |p, rng| Way { spot: Spot::Middle, ..RIGHT }.draw(p, rng)),
+    (["4.3", "same-numbers", "the same random numbers for light and directions", "one (U, V) a path",
+        "directions and light samples take numbers of their own"],
+        |p, rng| Way { spot: Spot::Reused, ..RIGHT }.draw(p, rng)),
+    (["4.3", "occlusion", "occlusion ignored", "V = 1", "a light sample that the cube hides adds 0"],
+        |p, rng| Way { hidden: Hidden::Lit, ..RIGHT }.draw(p, rng)),
+    (["4.3", "hidden-left-out", "hidden light samples left out of n", "divided by the visible ones", N],
+        |p, rng| Way { hidden: Hidden::Redrawn, ..RIGHT }.draw(p, rng)),
+    (["4.3", "dark-left-out", "rays without light left out of n", "divided by those that found it", N],
+        some_light),
+    (["4.3", "counted-twice", "the light found by chance and sampled", "both added",
+        "where the light is sampled, a ray that hits it adds nothing"],
+        |p, rng| Way { chance: true, ..RIGHT }.draw(p, rng)),
+    (["4.3", "no-pi-light", "1/π of the BRDF forgotten at the light sample", "ρ L cos θ cos θ′ A/r²", BRDF],
+        |p, rng| Way { last: |albedo, _| PI * albedo, ..RIGHT }.draw(p, rng)),
+    (["4.3", "no-pi", "1/π of the BRDF forgotten at every bounce", "f_r = ρ", BRDF],
+        |p, rng| Way { last: |rho, _| PI * rho, carried: |t, rho, _| t * rho * PI, ..RIGHT }.draw(p, rng)),
+    (["4.3", "no-last-albedo", "the last vertex's albedo forgotten", "L cos θ cos θ′ A/(π r²)",
+        "the vertex that the light falls on reflects ρ of it, too"],
+        |p, rng| Way { last: |_, _| 1.0, ..RIGHT }.draw(p, rng)),
+    (["4.3", "one-albedo", "p's albedo at every vertex", "ρ(p)ᵏ",
+        "take each vertex's own albedo: a wall's, or the cube's"],
+        |p, rng| Way { last: |_, of_p| of_p, carried: |t, _, of_p| t * of_p, ..RIGHT }.draw(p, rng)),
+    (["4.3", "no-throughput", "the throughput never multiplied", "Σ L_e", PRODUCT],
+        |p, rng| Way { carried: |t, _, _| t, ..RIGHT }.draw(p, rng)),
+    (["4.3", "replaced", "the throughput replaced, not multiplied", "throughput = ρ", PRODUCT],
+        |p, rng| Way { carried: |_, albedo, _| albedo, ..RIGHT }.draw(p, rng)),
+    (["4.3", "mirror", "a mirror bounce for a diffuse one", "ω = reflected ray at p_j",
+        "a diffuse surface sends light everywhere: draw ω anew at every vertex"],
+        |p, rng| Way { mirror: true, ..BY_CHANCE }.draw(p, rng)),
+    (["4.3", "uniform-no-cos", "cos θ forgotten, uniform directions", "f_r 2π a bounce", DIRECTION],
+        |p, rng| Way { directions: Hemisphere::Uniform, weight: |_| 2.0, ..RIGHT }.draw(p, rng)),
+    (["4.3", "cosine-weight", "uniform directions, the cosine weight", "ρ a bounce", DIRECTION],
+        |p, rng| Way { directions: Hemisphere::Uniform, ..RIGHT }.draw(p, rng)),
+    (["4.3", "uniform-weight", "cosine directions, the uniform weight", "2ρ cos θ a bounce", DIRECTION],
+        |p, rng| Way { weight: |cos| 2.0 * cos, ..RIGHT }.draw(p, rng)),
+    (["4.3", "cos-kept", "cosine directions, cos θ kept", "ρ cos θ a bounce", DIRECTION],
+        |p, rng| Way { weight: |cos| cos, ..RIGHT }.draw(p, rng)),
+    (["4.2", "one-more", "one bounce too many", "k + 1", VERTICES],
+        |p, rng| p.counting(if p.first == p.last { p.last + 1 } else { p.first }, p.last + 1, rng)),
+    (["4.2", "one-less", "one bounce too few", "k − 1", VERTICES], |p, rng| {
+        let last = p.last.saturating_sub(1);
+        p.counting(p.first.min(last), last, rng)
+    }),
+    (["4.2", "up-to", "all bounces up to k where exactly k are asked for", "Σ to k", VERTICES],
+        |p, rng| p.counting(0, p.last, rng)),
+    (["4.3", "no-first", "the first emission skipped", "Σ from 1", EMITS],
+        |p, rng| p.counting(p.first.max(1), p.last, rng)),
+    (["4.3", "last-only", "only the last vertex's light counted", "L_K alone", EMITS],
+        |p, rng| p.counting(p.last, p.last, rng)),
+    (["5", "cutoff", "stops where the throughput is small", "ends below 0.3, no compensation", CHANCE],
+        |p, rng| Way { cutoff: 0.3, ..RIGHT }.draw(p, rng)),
+    (["5", "roulette-bare", "roulette uncompensated", "goes on with chance 4/5, nothing divided", CHANCE],
+        |p, rng| Way { coin: Some(1.0), ..RIGHT }.draw(p, rng)),
+    (["5", "roulette-twice", "roulette compensated twice", "ρ/q² a bounce", "divide by q once for each coin"],
+        |p, rng| Way { coin: Some(1.0 / (GOES_ON * GOES_ON)), ..RIGHT }.draw(p, rng)),
+];
+
+const AREA: &str = "a point of the light has density 1/A: divide by it";
+const TURN: &str = "dω = cos θ′ dA/r²: sampling an area takes all three";
+const COSINE: &str = "cos θ is the surface's, once for every light sample";
+const N: &str = "divide by all n draws: one that finds nothing adds 0";
+const BRDF: &str = "f_r = ρ/π";
+const DIRECTION: &str = "a bounce weighs f_r cos θ/p(ω), with the p that ω was drawn from";
+const PRODUCT: &str = "the throughput is the product of all weights so far";
+const VERTICES: &str = "k counts the vertices between light and eye";
+const EMITS: &str = "every vertex that counts adds its L_e times the throughput";
+const CHANCE: &str = "end a path at random, and divide by the probability of going on";

@@ -46,8 +46,6 @@ pub(super) enum Hidden {
 /// How a path is followed, and what is summed along it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Way {
-    /// The smallest and the largest number of bounces that count, from those asked for.
-    pub counted: fn([u32; 2]) -> [u32; 2],
     /// The factor cos θ cos θ′ A/r² of a light sample.
     pub sample: fn(Seen) -> f64,
     pub spot: Spot,
@@ -76,7 +74,6 @@ pub(super) const GOES_ON: f64 = 0.8;
 pub(super) const TRIES: u32 = 4000;
 
 pub(super) const RIGHT: Way = Way {
-    counted: |asked| asked,
     sample: |s| s.here * s.there * s.area / (s.r * s.r),
     spot: Spot::Random,
     hidden: Hidden::Dark,
@@ -96,7 +93,7 @@ pub(super) const BY_CHANCE: Way = Way { sample: |_| 0.0, chance: true, ..RIGHT }
 impl Way {
     /// One draw.
     pub fn draw(&self, p: &LightOfPaths, rng: &mut Stream) -> f64 {
-        let (room, [first, last]) = (&p.room, (self.counted)([p.first, p.last]));
+        let (room, first, last) = (&p.room, p.first, p.last);
         let lit = room.scene().light_half_width > 0.0;
         let of_p = room.albedo(&room.point());
         let reused = if self.spot == Spot::Reused { [rng.uniform(), rng.uniform()] } else { [0.5; 2] };

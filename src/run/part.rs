@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Cost, Outcome, block_size};
+use super::work::block_size;
+use super::{Cost, Outcome};
 use crate::error::{Error, Result};
 use crate::estimate::Estimate;
 
@@ -26,18 +27,12 @@ use crate::estimate::Estimate;
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Part {
-    seed: u64,
+    pub(super) seed: u64,
     /// Of the whole run.
-    draws: u64,
-    blocks: Blocks,
-    cost: Cost,
-    seconds: f64,
-}
-
-impl Part {
-    pub(super) fn of(seed: u64, draws: u64, blocks: Blocks, cost: Cost, elapsed: Duration) -> Self {
-        Self { seed, draws, blocks, cost, seconds: elapsed.as_secs_f64() }
-    }
+    pub(super) draws: u64,
+    pub(super) blocks: Blocks,
+    pub(super) cost: Cost,
+    pub(super) seconds: f64,
 }
 
 /// Puts a run together from all of its shards, in any order: the estimate has the same bits as that of the

@@ -20,7 +20,7 @@ pub(crate) mod points;
 mod word;
 
 pub(crate) use abreast::Abreast;
-pub(crate) use word::{GRID, LANES, mix};
+pub(crate) use word::{GOLDEN, GRID, LANES, mix};
 
 /// The random numbers of one block of a run, draw by draw.
 ///

@@ -14,7 +14,7 @@ pub(super) fn watched<T>(wanted: bool, time: Option<Duration>, work: impl FnOnce
     let start = Instant::now();
     let bar = OnceCell::new();
     let shown = wanted && std::io::stderr().is_terminal();
-    let progress = |done: u64, total: Option<u64>| {
+    let progress = |done: u64, total: u64| {
         if shown && start.elapsed() > Duration::from_secs(1) {
             let bar = bar.get_or_init(|| progress_bar(time, total));
             bar.set_position(time.map_or(done, |_| milliseconds(start.elapsed())));
@@ -27,12 +27,12 @@ pub(super) fn watched<T>(wanted: bool, time: Option<Duration>, work: impl FnOnce
     result
 }
 
-fn progress_bar(time: Option<Duration>, total: Option<u64>) -> ProgressBar {
+fn progress_bar(time: Option<Duration>, total: u64) -> ProgressBar {
     let template = match time {
         Some(time) => format!("{{bar:40}} {{elapsed}} of {:.0} s", time.as_secs_f64()),
         None => "{bar:40} {human_pos} of {human_len} draws, {eta} to go".into(),
     };
-    let bar = ProgressBar::new(time.map(milliseconds).or(total).unwrap_or(0));
+    let bar = ProgressBar::new(time.map_or(total, milliseconds));
     match ProgressStyle::with_template(&template) {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,

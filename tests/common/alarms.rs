@@ -13,8 +13,7 @@ pub const BUDGETS: [(&str, f64); 9] = [
     ("run", 3e-10),
     ("trade", 2e-11),
     ("examples", 1e-11),
-    // at their own α, which their programs state
-    ("check and gallery", 9e-11),
+    ("check", 1e-11),
 ];
 
 static SPENT: Mutex<f64> = Mutex::new(0.0);

@@ -47,7 +47,7 @@ pub fn rows(pick: &mut Pick) -> Vec<Row> {
             .smooth(2),
     );
     let exponential = Exponential::new(pick.log(0.37, [1e-3, 1e3])).unwrap();
-    let signed = from_uniforms(|[u]| 3.0 * u - 1.0);
+    let signed = || from_uniforms(|[u]| 3.0 * u - 1.0);
     let f = Polynomial::new(pick);
     for (given, least) in [(0.83, 0.5), (0.2, 0.1)] {
         let roulette = Roulette::new(pick.between(given, [least, 1.0])).unwrap();
@@ -66,7 +66,7 @@ pub fn rows(pick: &mut Pick) -> Vec<Row> {
             .cdf(move |x| if x < 0.0 { 0.0 } else { 1.0 - p * exponential.survival(p * x) }),
         );
         rows.push(
-            row(format!("X_rr of 3U − 1, p = {p}"), roulette.wrap(signed), 0.5, [-1.0 / p, 2.0 / p], 15.0)
+            row(format!("X_rr of 3U − 1, p = {p}"), roulette.wrap(signed()), 0.5, [-1.0 / p, 2.0 / p], 15.0)
                 .variance(of(0.5, 0.75)),
         );
         let x = f.rectangle.independent(move |x, y| f.at(x, y));

@@ -281,16 +281,16 @@ fn read_folder(folder: &Path, rows: &mut Vec<Row>) -> Result<()> {
         let (student, question) = (student.to_owned(), question.to_owned());
         rows.push(match diagnosis {
             Ok(diagnosis) => {
-                let first = diagnosis.candidates().next();
+                let first = diagnosis.candidates.first();
                 let said = diagnosis.to_string();
-                let measured = diagnosis.measurements().first();
+                let measured = diagnosis.measurements.first();
                 Row {
                     student,
                     question,
-                    verdict: Some(Verdict::of(diagnosis.finding())),
+                    verdict: Some(Verdict::of(diagnosis.finding)),
                     mistake: first.map(|candidate| (candidate.id(), candidate.name())),
                     ratio: measured.map(|of| of.ratio().mean),
-                    reason: match (diagnosis.finding(), first) {
+                    reason: match (diagnosis.finding, first) {
                         (Finding::Known, Some(candidate)) => candidate.name(),
                         _ => said.lines().next().unwrap_or("").into(),
                     },

@@ -8,20 +8,20 @@ use crate::check::{Exercise, Mistake, Probe};
 /// A plain 1 is a mistake that the probe cannot detect. If the truth is 0 the ratio is to ∫ |f|, and 0 is
 /// right.
 pub fn mistakes(exercise: &Exercise) -> Table {
-    let probes = exercise.probes();
+    let probes = &exercise.probes;
     let row = |mistake: &Mistake| {
-        let name = std::iter::once(mistake.name().to_owned());
+        let name = std::iter::once(mistake.name.to_owned());
         name.chain(probes.iter().map(|probe| told(exercise, mistake, probe))).collect()
     };
     let numbered = (1..).zip(probes).map(|(number, probe)| format!("{number}: {probe}"));
     let caption = format!(
         "{}: the mean of each classic mistake over the truth, on the probes {}",
-        exercise.name(),
+        exercise.name,
         numbered.collect::<Vec<_>>().join("; ")
     );
     let columns =
         std::iter::once("mistake".to_owned()).chain((1..=probes.len()).map(|number| number.to_string()));
-    Table::new(&caption, columns, exercise.mistakes().iter().map(row))
+    Table::new(&caption, columns, exercise.mistakes.iter().map(row))
 }
 
 /// The ratio to two or three digits, or a plain 1 or 0 if the probe does not detect the mistake.
@@ -52,9 +52,9 @@ mod tests {
     fn every_exercise_has_its_table() {
         for exercise in super::super::exercises() {
             let table = mistakes(exercise);
-            assert_eq!(table.rows.len(), exercise.mistakes().len());
+            assert_eq!(table.rows.len(), exercise.mistakes.len());
             for row in &table.rows {
-                assert_eq!(row.len(), 1 + exercise.probes().len());
+                assert_eq!(row.len(), 1 + exercise.probes.len());
                 assert!(row.iter().all(|cell| !cell.is_empty() && !cell.contains("NaN")), "{row:?}");
             }
         }

@@ -19,9 +19,7 @@ use super::by_hand::{self, Judgement, Slip};
 use super::progress::watched;
 use super::terminal::{folded, stacked, width};
 use super::{Options, ended, print};
-use crate::check::{
-    self, Attempt, Candidate, Diagnosis, Exercise, Finding, Measurement, Mistake, Probe, Problem,
-};
+use crate::check::{self, Attempt, Candidate, Diagnosis, Exercise, Finding, Measurement, Probe, Problem};
 use crate::error::{Error, Result};
 use crate::numbers::shortened;
 use crate::run::{Budget, Run, Shortfall};
@@ -147,10 +145,9 @@ impl Arguments {
 
     fn judge_mine(&self, mine: &[Attempt<'_>]) -> Result<(String, Verdict)> {
         let asked = exercise(&self.question)?;
-        let Some(mine) = mine.iter().find(|attempt| std::ptr::eq(attempt.exercise(), asked)) else {
-            let (question, asked) = (&self.question, asked.name());
-            let given: Vec<_> =
-                mine.iter().map(|attempt| format!("“{}”", attempt.exercise().name())).collect();
+        let Some(mine) = mine.iter().find(|attempt| std::ptr::eq(attempt.exercise, asked)) else {
+            let (question, asked) = (&self.question, asked.name);
+            let given: Vec<_> = mine.iter().map(|attempt| format!("“{}”", attempt.exercise.name)).collect();
             return Err(Error::Usage(format!(
                 "question {question} is about “{asked}”, but the estimator in this file is about {}",
                 given.join(" and ")
@@ -166,7 +163,7 @@ impl Arguments {
             format!("Cut short: {shortfall} on a probe. Ask for a larger error, or give a time: --seconds.\n")
         });
         let diagnosis = check::diagnose(&measurements)?.shown_by(mine);
-        let verdict = Verdict::of(diagnosis.finding());
+        let verdict = Verdict::of(diagnosis.finding);
         if self.json {
             return Ok((self.diagnosis_json(&diagnosis, &[]), verdict));
         }
@@ -181,10 +178,10 @@ impl Arguments {
     /// asked for, if it was cut short.
     fn measure(&self, mine: &Attempt<'_>) -> Result<(Vec<Measurement>, Option<Shortfall>)> {
         let (mut measurements, mut shortfall) = (Vec::new(), None::<Shortfall>);
-        for probe in mine.exercise().probes_of(&self.question) {
+        for probe in mine.exercise.probes_of(&self.question) {
             // ratios are judged, so the error asked for is that of the ratio
             let budget = match self.budget.unwrap_or(Budget::Draws(DRAWS)) {
-                Budget::StdError(error) => Budget::StdError(error * probe.scale()),
+                Budget::StdError(error) => Budget::StdError(error * probe.scale),
                 other => other,
             };
             let seed = check::seed_of(probe, self.seed);
@@ -195,8 +192,7 @@ impl Arguments {
                 })
             })?;
             measurements.push(measurement);
-            let as_ratio =
-                |short: Shortfall| Shortfall { std_error: short.std_error / probe.scale(), ..short };
+            let as_ratio = |short: Shortfall| Shortfall { std_error: short.std_error / probe.scale, ..short };
             let further = |short: &Shortfall| shortfall.is_none_or(|before| short.draws > before.draws);
             shortfall = outcome.shortfall.map(as_ratio).filter(further).or(shortfall);
         }
@@ -229,7 +225,7 @@ impl Arguments {
         let probes = exercise.probes_of(&self.question);
         let measurements = draws::measure(sources, &probes)?;
         let diagnosis = check::diagnose(&measurements)?;
-        let verdict = Verdict::of(diagnosis.finding());
+        let verdict = Verdict::of(diagnosis.finding);
         let elsewhere =
             if verdict == Verdict::Wrong { fitting_elsewhere(&measurements, &probes) } else { Vec::new() };
         if self.json {
@@ -237,7 +233,7 @@ impl Arguments {
         }
         let mut text = String::new();
         if let [only] = &measurements[..] {
-            let (draws, probe, truth) = (only.estimate.draws(), only.probe, shortened(only.probe.truth()));
+            let (draws, probe, truth) = (only.estimate.draws(), only.probe, shortened(only.probe.truth));
             let number = number_of(probe, &probes);
             text +=
                 &format!("Taken as {draws} draws for probe {number}, “{probe}”, whose truth is {truth}.\n");
@@ -262,27 +258,27 @@ impl Arguments {
     }
 
     fn diagnosis_json(&self, diagnosis: &Diagnosis, elsewhere: &[Elsewhere<'_>]) -> String {
-        let probes = diagnosis.exercise().probes_of(&self.question);
-        let mistakes: Vec<Value> = diagnosis.candidates().map(candidate_json).collect();
-        let measured = diagnosis.measurements().iter().map(|of| {
+        let probes = diagnosis.exercise.probes_of(&self.question);
+        let mistakes: Vec<Value> = diagnosis.candidates.iter().map(candidate_json).collect();
+        let measured = diagnosis.measurements.iter().map(|of| {
             let ratio = of.ratio();
             let fits = elsewhere.iter().find(|(number, _)| *number == number_of(of.probe, &probes));
             let fits: Vec<usize> =
                 fits.map_or(Vec::new(), |(_, others)| others.iter().map(|(n, _)| *n).collect());
             json!({
                 "probe": number_of(of.probe, &probes), "what": of.probe.to_string(),
-                    "truth": of.probe.truth(),
+                    "truth": of.probe.truth,
                 "estimate": of.estimate.mean(), "std_error": of.estimate.std_error(),
                 "draws": of.estimate.draws(), "ratio": ratio.mean, "fits_probes": fits,
             })
         });
-        let counterexample = diagnosis.counterexample().map(|of| {
+        let counterexample = diagnosis.counterexample.as_ref().map(|of| {
             let probe = number_of(of.probe, &probes);
             json!({ "probe": probe, "numbers": of.numbers, "yours": of.yours, "right": of.right })
         });
         json!({
-            "question": self.question, "verdict": Verdict::of(diagnosis.finding()).word(),
-            "mistakes": mistakes, "compared": diagnosis.compared(), "counterexample": counterexample,
+            "question": self.question, "verdict": Verdict::of(diagnosis.finding).word(),
+            "mistakes": mistakes, "compared": diagnosis.compared, "counterexample": counterexample,
             "probes": measured.collect::<Vec<_>>(),
             "seed": (self.action == Action::Mine).then_some(self.seed),
         })
@@ -291,10 +287,10 @@ impl Arguments {
 }
 
 fn candidate_json(candidate: &Candidate) -> Value {
-    let mistake = candidate.mistake();
+    let mistake = candidate.mistake;
     json!({
-        "id": candidate.id(), "name": candidate.name(), "factor": candidate.factor(),
-        "formula": mistake.map(Mistake::formula), "mend": mistake.map(Mistake::mend),
+        "id": candidate.id(), "name": candidate.name(), "factor": candidate.factor,
+        "formula": mistake.map(|of| of.formula), "mend": mistake.map(|of| of.mend),
     })
 }
 

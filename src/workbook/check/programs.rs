@@ -10,20 +10,20 @@ use crate::numbers::shortened;
 
 /// A question's probes: comment lines with a #, then one line for each probe, its number first.
 pub fn probes(exercise: &Exercise, question: &str) -> String {
-    let mut text = format!("# Question {question}, {}\n", exercise.name());
+    let mut text = format!("# Question {question}, {}\n", exercise.name);
     let probes = exercise.probes_of(question);
-    let names = |probe: &&Probe| probe.given().iter().map(|(name, _)| *name).collect::<Vec<_>>().join(" ");
-    for line in exercise.draw().lines() {
+    let names = |probe: &&Probe| probe.given.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(" ");
+    for line in exercise.draw.lines() {
         // writing to a String cannot fail
         let _ = writeln!(text, "# {line}");
     }
     let _ = writeln!(text, "# The probes:");
     for (number, probe) in (1..).zip(&probes) {
-        let _ = writeln!(text, "#   {number}. {probe}: the truth is {}", shortened(probe.truth()));
+        let _ = writeln!(text, "#   {number}. {probe}: the truth is {}", shortened(probe.truth));
     }
     let _ = writeln!(text, "# probe {}", probes.first().map(names).unwrap_or_default());
     for (number, probe) in (1..).zip(&probes) {
-        let given: Vec<String> = probe.given().iter().map(|(_, given)| given.to_string()).collect();
+        let given: Vec<String> = probe.given.iter().map(|(_, given)| given.to_string()).collect();
         let _ = writeln!(text, "{number} {}", given.join(" "));
     }
     text.trim_end().into()
@@ -32,7 +32,7 @@ pub fn probes(exercise: &Exercise, question: &str) -> String {
 /// The same as JSON Lines.
 pub fn probes_json(exercise: &Exercise, question: &str) -> String {
     let line = |(number, probe): (usize, &&Probe)| {
-        let given = probe.given().iter().map(|(name, given)| {
+        let given = probe.given.iter().map(|(name, given)| {
             let value = match given {
                 Given::Number(number) => json!(number),
                 Given::Word(word) => json!(word),
@@ -41,8 +41,8 @@ pub fn probes_json(exercise: &Exercise, question: &str) -> String {
         });
         let given: Map<String, Value> = given.collect();
         json!({
-            "question": question, "probe": number, "what": probe.to_string(), "draw": exercise.draw(),
-            "parameters": given, "truth": probe.truth(),
+            "question": question, "probe": number, "what": probe.to_string(), "draw": exercise.draw,
+            "parameters": given, "truth": probe.truth,
         })
         .to_string()
     };
@@ -70,14 +70,14 @@ impl Language {
 /// A program that reads the question's probes and writes a probe's number and a draw per line, with a place
 /// for the reader's estimator.
 pub fn template(exercise: &Exercise, question: &str, language: Language) -> Result<String> {
-    let Some(parts) = PARTS.iter().find(|parts| parts.exercise == exercise.id()) else {
+    let Some(parts) = PARTS.iter().find(|parts| parts.exercise == exercise.id) else {
         return Err(Error::Usage(format!("question {question} has no template program")));
     };
     let (frame, part) = match language {
         Language::Python => (PYTHON, &parts.python),
         Language::Cpp => (CPP, &parts.cpp),
     };
-    let given = exercise.probes().first().map_or(&[][..], |probe| probe.given());
+    let given = exercise.probes.first().map_or(&[][..], |probe| &probe.given);
     let joined = |word: &dyn Fn(usize, &str, bool) -> String, between: &str| {
         let words =
             (1..).zip(given).map(|(place, (name, of))| word(place, name, matches!(of, Given::Number(_))));
