@@ -158,8 +158,9 @@ fn a_vertex_has_the_albedo_and_the_emission_of_its_face() {
     assert_eq!(dark.light_area(), 0.0);
 }
 
-/// The part of the light that the cube leaves free, on the floor beside it: against 4 million points of the
-/// light, of which those in the cells that the shadow's edge crosses may be counted wrongly, fewer than 5e-3.
+/// The part of the light that the cube leaves free, on the floor beside it: against n² points of the light. A
+/// row of them meets the edge of the convex shadow twice, and is off by half a cell each time: together 1/n
+/// of the light, times how much brighter than the mean a point may be, less than 1.5.
 #[test]
 fn the_cube_shades_the_floor_beside_it() {
     for ([x, y], h) in [([0.7, 0.1], 0.5), ([0.6, 0.55], 0.8), ([-0.45, 0.62], 1.7), ([-0.9, 0.0], 1.9)] {
@@ -180,7 +181,11 @@ fn the_cube_shades_the_floor_beside_it() {
         let (found, free) = (0.5 * 10.0 * FRAC_1_PI * cell * sum, room.direct(&p));
         let off = (room.one_bounce() / found - 1.0).abs();
         println!("[{x}, {y}]: {:.3} of the light, off by {off:.1e}", found / free);
-        assert!(off <= 1e-4 && found < 0.995 * free, "[{x}, {y}]: {} for {found}", room.one_bounce());
+        assert!(
+            off <= 1.5 / f64::from(n) * free / found && found < 0.995 * free,
+            "[{x}, {y}]: {} for {found}",
+            room.one_bounce()
+        );
     }
     // from where the cube hides nothing
     for point in [[0.2, 0.1, 1.0], [0.5, 0.1, 0.4], [2.0, 0.3, 0.5], [1.7, 0.2, 0.0]] {

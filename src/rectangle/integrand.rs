@@ -109,11 +109,7 @@ impl Integrand {
                     + product([area, y, y])
                     + (product([area, width, width]) + product([area, height, height])) / 12.0,
             ),
-            Self::Disc => Some(match Overlap::with_disc(rectangle)? {
-                Overlap::None => 0.0,
-                Overlap::Rectangle => area,
-                Overlap::Disc => PI * RADIUS_2,
-            }),
+            Self::Disc => part_of_disc(rectangle),
             Self::Gaussian => Some(bell(1.0, rectangle.x) * bell(1.0, rectangle.y)),
             Self::Product => Some(product([area, x, y])),
             Self::InverseDistance => {
@@ -133,10 +129,7 @@ impl Integrand {
         match self {
             Self::Constant => Some(0.0),
             Self::Paraboloid => self.main_effects(rectangle).map(|[x, y]| x + y),
-            Self::Disc => Some(match Overlap::with_disc(rectangle)? {
-                Overlap::None | Overlap::Rectangle => 0.0,
-                Overlap::Disc => PI * RADIUS_2 * (area - PI * RADIUS_2),
-            }),
+            Self::Disc => part_of_disc(rectangle).map(|part| part * (area - part)),
             // A² [E g² E h² − (E g E h)²]
             Self::Gaussian => {
                 let squares = bell(2.0, rectangle.x) / width * (bell(2.0, rectangle.y) / height);
@@ -192,11 +185,9 @@ impl Integrand {
                     + product([area, length, length]).powi(2) / 180.0
             })),
             // E[f|X] = 2√(4 − X²)/(d − c) where |X| ≤ 2
-            Self::Disc => Some(match Overlap::with_disc(rectangle)? {
-                Overlap::None | Overlap::Rectangle => [0.0; 2],
-                Overlap::Disc => {
-                    [width, height].map(|length| length * (128.0 / 3.0) - (PI * RADIUS_2).powi(2))
-                }
+            Self::Disc => Some(match part_of_disc(rectangle)? {
+                part if part == 0.0 || part == area => [0.0; 2],
+                part => [width, height].map(|length| length * (128.0 / 3.0) - part.powi(2)),
             }),
             Self::Gaussian => {
                 let (across, along) = (bell(1.0, rectangle.x), bell(1.0, rectangle.y));
@@ -228,29 +219,21 @@ impl fmt::Display for Integrand {
     }
 }
 
-/// How a rectangle and the disc overlap.
-enum Overlap {
-    None,
-    Rectangle,
-    Disc,
-}
-
-impl Overlap {
-    /// `None` if they overlap in part.
-    fn with_disc(&Rectangle { x: [a, b], y: [c, d], .. }: &Rectangle) -> Option<Self> {
-        let radius = RADIUS_2.sqrt();
-        let square = |[x, y]: [f64; 2]| x * x + y * y;
-        let farthest = square([a.abs().max(b.abs()), c.abs().max(d.abs())]);
-        let nearest = square([0f64.clamp(a, b), 0f64.clamp(c, d)]);
-        if farthest <= RADIUS_2 {
-            Some(Self::Rectangle)
-        } else if nearest > RADIUS_2 {
-            Some(Self::None)
-        } else if a.max(c) <= -radius && b.min(d) >= radius {
-            Some(Self::Disc)
-        } else {
-            None
-        }
+/// The area of the disc in the rectangle: none, all of the rectangle, or all of the disc; `None` where their
+/// edges cross.
+fn part_of_disc(&Rectangle { x: [a, b], y: [c, d], area, .. }: &Rectangle) -> Option<f64> {
+    let radius = RADIUS_2.sqrt();
+    let square = |[x, y]: [f64; 2]| x * x + y * y;
+    let farthest = square([a.abs().max(b.abs()), c.abs().max(d.abs())]);
+    let nearest = square([0f64.clamp(a, b), 0f64.clamp(c, d)]);
+    if farthest <= RADIUS_2 {
+        Some(area)
+    } else if nearest > RADIUS_2 {
+        Some(0.0)
+    } else if a.max(c) <= -radius && b.min(d) >= radius {
+        Some(PI * RADIUS_2)
+    } else {
+        None
     }
 }
 

@@ -57,7 +57,7 @@ impl LightModel {
 
     /// The true value v/(1 − ρ).
     pub fn mean(&self) -> f64 {
-        let Terms { one, rho, v } = self.terms();
+        let [one, rho, v] = self.terms();
         (v / (one - rho)).round()
     }
 
@@ -96,7 +96,7 @@ impl LightModel {
         if self.albedo == 0.0 {
             return 0.0; // for v = 1, too, where the formula is 0/0
         }
-        let Terms { one, rho, v } = self.terms();
+        let [one, rho, v] = self.terms();
         let (a, b) = (v / (one - rho).squared(), one - v);
         let root = rho * (a + b) / (a * rho + (b * (a * (one - rho.squared()) + b)).sqrt());
         root.round().clamp(self.albedo, 1.0)
@@ -114,28 +114,21 @@ impl LightModel {
         if self.visibility == 0.0 || !lead.is_positive() {
             return Ok(0.0);
         }
-        let Terms { one, rho, v } = self.terms();
+        let [one, rho, v] = self.terms();
         let missing = truncated.missing() / (one - rho);
         Ok((lead / (v * missing.squared())).round())
     }
 
-    /// The numbers in all formulas, as double-doubles.
-    fn terms(&self) -> Terms {
-        Terms { one: Extended::ONE, rho: self.albedo.into(), v: self.visibility.into() }
+    /// 1, ρ and v as double-doubles: closed forms are computed in these and rounded once.
+    fn terms(&self) -> [Extended; 3] {
+        [Extended::ONE, self.albedo.into(), self.visibility.into()]
     }
 
     /// v(1 − v), the variance of whether a vertex sees the light.
     fn spread(&self) -> Extended {
-        let Terms { one, v, .. } = self.terms();
+        let [one, _, v] = self.terms();
         v * (one - v)
     }
-}
-
-/// Closed forms are computed in double-double and rounded once.
-struct Terms {
-    one: Extended,
-    rho: Extended,
-    v: Extended,
 }
 
 /// Paths that end by roulette, an unbiased estimator of [`LightModel::mean`]; see [`LightModel::roulette`].
@@ -177,7 +170,7 @@ impl RoulettePaths {
     }
 
     fn extended_variance(&self) -> Extended {
-        let Terms { one, rho, v } = self.model.terms();
+        let [one, rho, v] = self.model.terms();
         let (later, growth) = self.growth();
         let mean = v / (one - rho);
         (later * mean.squared() * (one - self.q.into()) + self.model.spread()) * growth
@@ -185,7 +178,7 @@ impl RoulettePaths {
 
     /// Variance × cost/v − (1 − v), computed without that difference, which cancels.
     fn excess(&self) -> Extended {
-        let Terms { one, rho, v } = self.model.terms();
+        let [one, rho, v] = self.model.terms();
         let (later, growth) = self.growth();
         let q = Extended::from(self.q);
         (later * v / (one - rho).squared() + (one - v) * (q / (one - q) + later)) * growth
@@ -196,7 +189,7 @@ impl RoulettePaths {
         if self.model.albedo == 0.0 || self.model.visibility == 0.0 {
             return (Extended::from(0.0), Extended::ONE); // only the first vertex, if any, sees light
         }
-        let (square, q) = (self.model.terms().rho.squared(), Extended::from(self.q));
+        let (square, q) = (Extended::from(self.model.albedo).squared(), Extended::from(self.q));
         let margin = q - square;
         (square / q, if margin.is_positive() { q / margin } else { f64::INFINITY.into() })
     }
@@ -242,7 +235,7 @@ impl TruncatedPaths {
 
     /// The mean v(1 − ρᴷ⁺¹)/(1 − ρ).
     pub fn mean(&self) -> f64 {
-        let Terms { rho, v, .. } = self.model.terms();
+        let [_, rho, v] = self.model.terms();
         let (_, sum) = rho.powers(self.vertices());
         (v * sum).round()
     }
@@ -281,26 +274,24 @@ impl TruncatedPaths {
 
     /// Variance × cost / v − (1 − v).
     fn excess(&self) -> Extended {
-        let Terms { one, v, .. } = self.model.terms();
+        let [one, _, v] = self.model.terms();
         (one - v) * (self.sum_of_squares() * self.cost().into() - one)
     }
 
     /// v ρᴷ⁺¹/(1 − ρ)
     fn shortfall(&self) -> Extended {
-        let Terms { one, rho, v } = self.model.terms();
+        let [one, rho, v] = self.model.terms();
         v * self.missing() / (one - rho)
     }
 
     /// ρᴷ⁺¹
     fn missing(&self) -> Extended {
-        let (power, _) = self.model.terms().rho.powers(self.vertices());
-        power
+        Extended::from(self.model.albedo).powers(self.vertices()).0
     }
 
     /// 1 + ρ² + … + ρ²ᴷ
     fn sum_of_squares(&self) -> Extended {
-        let (_, sum) = self.model.terms().rho.squared().powers(self.vertices());
-        sum
+        Extended::from(self.model.albedo).squared().powers(self.vertices()).1
     }
 }
 
