@@ -131,12 +131,10 @@ pub fn variance_against_exponent(draws: u64, seed: u64) -> Result<Figure> {
         };
         exponents.iter().map(of).collect()
     };
+    let ticks = [(-1.0, "−1"), (-0.5, "−½"), (0.0, "0"), (1.0, "1"), (2.0, "2"), (3.0, "3"), (4.0, "4")];
     let mut panel = Panel::new(
         "Light cosᵃ θ, ρ = 1",
-        Axis::linear("exponent a (dimensionless)", -1.5, 4.0).with_ticks(
-            [-1.0, -0.5, 0.0, 1.0, 2.0, 3.0, 4.0]
-                .map(|a| (a, if a == -0.5 { "−½".to_owned() } else { format!("{a}").replace('-', "−") })),
-        ),
+        Axis::linear("exponent a (dimensionless)", -1.5, 4.0).with_ticks(ticks),
         Axis::linear("variance of a draw", 0.0, 0.6),
     );
     panel
@@ -194,10 +192,10 @@ pub fn variance_against_ring(draws: u64, seed: u64) -> Result<Figure> {
         };
         measured.push([width, of(Cosine)? / of(Uniform)?]);
     }
+    let ticks = [(0.0, "0"), (0.25, "0.25"), (0.5, "0.5"), (0.75, "0.75"), (1.0, "1")];
     let mut panel = Panel::new(
         "Light only where cos θ < ε",
-        Axis::linear("width ε of the ring (dimensionless)", 0.0, 1.0)
-            .with_ticks([0.0, 0.25, 0.5, 0.75, 1.0].map(|w| (w, format!("{w}")))),
+        Axis::linear("width ε of the ring (dimensionless)", 0.0, 1.0).with_ticks(ticks),
         Axis::log("Var cosine / Var uniform", 0.05, 100.0),
     );
     panel

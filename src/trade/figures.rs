@@ -31,19 +31,6 @@ type Drawn<'a> = (&'a Measured, (Ink, Marker));
 /// bias may dominate. At most sixteen rivals are drawn; the description names those left out. `name` is the
 /// file name, `title` says what is compared.
 ///
-/// ```
-/// use unbiased::from_fn;
-/// use unbiased::trade::{Rival, Trade, figures};
-///
-/// let one = from_fn(|rng| rng.uniform().sqrt());
-/// let two = from_fn(|rng| 0.5 * (rng.uniform().sqrt() + rng.uniform().sqrt()));
-/// let rivals = [Rival::new("one", one), Rival::new("two", two)];
-/// let found = Trade::new(1, 2.0 / 3.0)?.seconds_each(0.01)?.compare(&rivals)?;
-/// let figure = figures::comparison("trade_mine", "One point or two", &found)?;
-/// assert!(figure.svg().starts_with("<svg"));
-/// # Ok::<(), unbiased::Error>(())
-/// ```
-///
 /// # Errors
 /// If it cannot be drawn.
 pub fn comparison(name: &'static str, title: &str, comparison: &Comparison) -> Result<Figure> {
