@@ -269,7 +269,7 @@ pub fn tails(exponential: &Exponential, draws: usize, seed: u64) -> Result<Figur
         Axis::log("P(X > x)", 1e-18, 1.0),
     );
     panel
-        .curve_between("e^(−λx)", Ink::Black, 0.0, 40.0, |x| (-x).exp())
+        .curve_between("e^(−λx)", Ink::Black, [0.0, 40.0], |x| (-x).exp())
         .upright("last f32 sample", Ink::Vermilion, end32)
         .upright("last f64 sample", Ink::Blue, end64)
         .marks("measured", Ink::Green, Marker::Ring, measured)

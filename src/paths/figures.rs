@@ -11,7 +11,7 @@ use crate::lambertian::hemisphere::Hemisphere::{Cosine, Uniform};
 use crate::numbers::typeset;
 use crate::paths::room::{BoxRoom, Vertex, exact};
 use crate::paths::{Bounces, FindLight, Paths, reflected};
-use crate::plot::{Axis, Figure, Ink, Marker, Panel, Plot, Side};
+use crate::plot::{Axis, Figure, Ink, Marker, Panel, Plot, Side, extent};
 use crate::run::{Budget, Run, estimate};
 use crate::stream::Stream;
 
@@ -100,7 +100,7 @@ pub fn occluded_fraction(draws: u64, seed: u64) -> Result<Figure> {
         Axis::linear("estimate/ρ (W m⁻² sr⁻¹)", 0.0, 2.0),
     );
     panel.level("divided by n", Ink::Blue, truth);
-    panel.curve_between("divided by the visible", Ink::Vermilion, 0.0, ABOVE, |c| truth / (1.0 - c));
+    panel.curve_between("divided by the visible", Ink::Vermilion, [0.0, ABOVE], |c| truth / (1.0 - c));
     let mut measured = [Vec::new(), Vec::new()];
     for tenth in 0..=8 {
         let c = f64::from(tenth) / 10.0;
@@ -168,11 +168,8 @@ pub fn radiance_by_bounces(room: &BoxRoom, seed: u64) -> Result<Figure> {
     }
     // k, the value, and the ends of its interval
     let all: Vec<_> = exact.iter().map(|&[k, y]| [k, y, y, y]).chain(found.iter().copied()).collect();
-    let lit = all.iter().map(|[_, y, ..]| *y).filter(|y| *y > 0.0);
-    let (least, most) =
-        lit.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), y| (least.min(y), most.max(y)));
     // if no light reaches p the axes still need a height
-    let (least, most) = if most > 0.0 { (least, most) } else { (1.0, 1.0) };
+    let [least, most] = extent(all.iter().map(|[_, y, ..]| *y)).unwrap_or([1.0; 2]);
     let (low, high) = (10f64.powf((0.8 * least).log10().floor()), 10f64.powf((2.0 * most).log10().ceil()));
     let mut panel = Panel::new(
         "Light by the number of bounces",

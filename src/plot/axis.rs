@@ -110,6 +110,12 @@ impl Axis {
     }
 }
 
+/// The least and the largest of the values that a logarithmic axis can show, if there are any.
+pub(crate) fn extent(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
+    let shown = values.into_iter().filter(|value| *value > 0.0 && value.is_finite());
+    shown.map(|value| [value, value]).reduce(|[low, high], [a, b]| [low.min(a), high.max(b)])
+}
+
 /// The number of the form 1, 2 or 5 · 10^k that is nearest to `rough`.
 fn round_step(rough: f64) -> f64 {
     let power = 10f64.powf(rough.log10().floor());

@@ -10,36 +10,41 @@ struct Box2 {
 impl Box2 {
     /// The area of the overlap of two rectangles.
     fn overlap(&self, other: &Self) -> f64 {
-        let along = |axis: usize| {
-            let (Some(a), Some(b)) = (self.side(axis), other.side(axis)) else { return 0.0 };
-            (a[1].min(b[1]) - a[0].max(b[0])).max(0.0)
-        };
-        along(0) * along(1)
-    }
-
-    fn side(&self, axis: usize) -> Option<[f64; 2]> {
-        let (middle, half) = (self.middle.get(axis)?, self.half.get(axis)?);
-        Some([middle - half, middle + half])
+        let sides = self.middle.into_iter().zip(self.half).zip(other.middle.into_iter().zip(other.half));
+        let along = sides.map(|((a, p), (b, q))| ((a + p).min(b + q) - (a - p).max(b - q)).max(0.0));
+        along.product()
     }
 
     /// Whether a segment passes through.
-    fn is_crossed(&self, [from, to]: [[f64; 2]; 2]) -> bool {
-        let (mut enters, mut leaves) = (0.0f64, 1.0f64);
-        for (((start, end), middle), half) in from.into_iter().zip(to).zip(self.middle).zip(self.half) {
-            let step = end - start;
-            let (low, high) = (middle - half - start, middle + half - start);
-            if step == 0.0 {
-                if low > 0.0 || high < 0.0 {
-                    return false;
+    fn is_crossed(&self, segment: [[f64; 2]; 2]) -> bool {
+        let [x, y] = self.middle;
+        let [across, up] = self.half;
+        let [from, to] = segment.map(|at| [0.5 + 0.5 * (at[0] - x) / across, 0.5 + 0.5 * (at[1] - y) / up]);
+        clip_segment(from, to).is_some()
+    }
+}
+
+/// The part of a segment inside the unit square (Liang & Barsky 1984).
+pub(super) fn clip_segment(from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+    let (mut enter, mut leave) = (0.0f64, 1.0f64);
+    let step = [to[0] - from[0], to[1] - from[1]];
+    for (start, step) in from.into_iter().zip(step) {
+        for (direction, room) in [(-step, start), (step, 1.0 - start)] {
+            if direction == 0.0 || !direction.is_finite() {
+                if room < 0.0 || !direction.is_finite() {
+                    return None;
                 }
+            } else if direction < 0.0 {
+                enter = enter.max(room / direction);
             } else {
-                let (a, b) = (low / step, high / step);
-                enters = enters.max(a.min(b));
-                leaves = leaves.min(a.max(b));
+                leave = leave.min(room / direction);
             }
         }
-        enters <= leaves
     }
+    let along = |t: f64| [from[0] + t * step[0], from[1] + t * step[1]];
+    let a = if enter == 0.0 { from } else { along(enter) };
+    let b = if leave == 1.0 { to } else { along(leave) };
+    (enter <= leave).then_some([a, b])
 }
 
 /// Whether two segments cross.
@@ -188,6 +193,17 @@ mod tests {
         let [_, high] = labels.beside(&[[50.0, 52.0]], "upper").unwrap();
         assert!(low < 50.0 && high > 52.0, "{low}, {high}");
         assert!(labels.in_the_way() <= 1e-9 && labels.beside(&[], "nowhere").is_none());
+    }
+
+    #[test]
+    fn segments_are_clipped_to_the_unit_square() {
+        assert_eq!(clip_segment([0.2, 0.2], [0.8, 0.4]), Some([[0.2, 0.2], [0.8, 0.4]]));
+        assert_eq!(clip_segment([-1.0, 0.5], [3.0, 0.5]), Some([[0.0, 0.5], [1.0, 0.5]]));
+        assert_eq!(clip_segment([0.5, 0.5], [0.5, 2.5]), Some([[0.5, 0.5], [0.5, 1.0]]));
+        assert_eq!(clip_segment([2.0, 0.0], [2.0, 1.0]), None);
+        assert_eq!(clip_segment([-1.0, 0.9], [0.5, 2.4]), None);
+        assert_eq!(clip_segment([0.5, 0.5], [f64::INFINITY, 0.5]), None);
+        assert_eq!(clip_segment([0.5, 0.5], [0.5, f64::NAN]), None);
     }
 
     #[test]

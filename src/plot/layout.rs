@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::panel::Item;
+use super::panel::{Item, Kind};
 use super::{Edition, Figure, Ink, Panel, document, render};
 use crate::error::{Error, Result};
 use crate::numbers::{csv_field, typeset};
@@ -54,34 +54,18 @@ impl Plot {
         let mut csv = String::from("panel,series,x,y,low,high\n");
         let items = self.panels.iter().flat_map(|panel| panel.items.iter().map(move |item| (panel, item)));
         for (panel, item) in items {
-            let plain = |points: &[[f64; 2]]| {
-                points.iter().map(|&[x, y]| [Some(x), Some(y), None, None]).collect::<Vec<_>>()
-            };
-            let (series, rows) = match item {
-                Item::Line { ink, .. }
-                    if self.edition == Edition::Student && !matches!(ink, Ink::Black | Ink::Grey) =>
-                {
-                    continue;
-                }
-                Item::Line { series, points, .. }
-                | Item::Marks { series, points, .. }
-                | Item::Bars { series, points, .. } => (series, plain(points)),
-                Item::Band { series, points, .. } => {
-                    let row = |&[x, low, high]: &[f64; 3]| [Some(x), None, Some(low), Some(high)];
-                    (series, points.iter().map(row).collect())
-                }
-                Item::ErrorBars { series, points, .. } => {
-                    (series, points.iter().map(|point| point.map(Some)).collect())
-                }
-                Item::Shade { .. } | Item::Arrow { .. } | Item::Text { .. } | Item::Label { .. } => continue,
-            };
-            if series.is_empty() {
+            let Item::Series { name, ink, kind, points } = item else { continue };
+            let answer = *kind == Kind::Line && !matches!(ink, Ink::Black | Ink::Grey);
+            if name.is_empty() || (answer && self.edition == Edition::Student) {
                 continue;
             }
-            for row in rows.into_iter().filter(|row| !row.iter().flatten().any(|cell| cell.is_nan())) {
-                let cells = row.map(|cell| cell.map(six_digits).unwrap_or_default());
+            let [panel, series] = [&panel.heading, name].map(|name| csv_field(name));
+            let is_drawn = |[x, y, low, high]: &&[f64; 4]| {
+                !x.is_nan() && !(y.is_nan() && (low.is_nan() || high.is_nan()))
+            };
+            for point in points.iter().filter(is_drawn) {
+                let cells = point.map(|cell| if cell.is_nan() { String::new() } else { six_digits(cell) });
                 // writing to a String cannot fail
-                let [panel, series] = [&panel.heading, series].map(|name| csv_field(name));
                 let _ = writeln!(csv, "{panel},{series},{}", cells.join(","));
             }
         }

@@ -15,7 +15,7 @@ mod slide;
 
 pub use figure::Figure;
 
-pub(crate) use axis::Axis;
+pub(crate) use axis::{Axis, extent};
 pub(crate) use figure::write_whole;
 pub(crate) use labels::Labels;
 pub(crate) use layout::Plot;

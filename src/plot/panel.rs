@@ -57,40 +57,28 @@ pub(crate) enum Side {
     Centre,
 }
 
-/// An item on a panel, in data coordinates, clipped to the axes. A series without a name is a legend's, and
-/// not in the CSV.
+/// How the points of a series are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Kind {
+    /// A curve through them.
+    Line,
+    /// The region between low and high.
+    Band,
+    /// A marker each, and a bar from low to high.
+    Marks(Marker),
+    /// A bar each from the axis to y, so wide in units of x.
+    Bars(f64),
+}
+
+/// An item on a panel, in data coordinates, clipped to the axes.
 #[derive(Debug, Clone)]
 pub(crate) enum Item {
-    Line {
-        series: String,
+    /// points x, y, low and high, with NaN for what a point has not; a series without a name is a legend's
+    Series {
+        name: String,
         ink: Ink,
-        points: Vec<[f64; 2]>,
-    },
-    /// x, low and high
-    Band {
-        series: String,
-        ink: Ink,
-        points: Vec<[f64; 3]>,
-    },
-    Marks {
-        series: String,
-        ink: Ink,
-        marker: Marker,
-        points: Vec<[f64; 2]>,
-    },
-    /// x, y, low and high
-    ErrorBars {
-        series: String,
-        ink: Ink,
-        marker: Marker,
+        kind: Kind,
         points: Vec<[f64; 4]>,
-    },
-    /// bars from the axis to y, `width` wide in units of x
-    Bars {
-        series: String,
-        ink: Ink,
-        width: f64,
-        points: Vec<[f64; 2]>,
     },
     /// a region between two values of x
     Shade {
@@ -133,77 +121,86 @@ impl Panel {
         Self { heading: heading.into(), x, y, items: Vec::new(), bare: false }
     }
 
+    fn series(
+        &mut self,
+        name: &str,
+        ink: Ink,
+        kind: Kind,
+        points: impl IntoIterator<Item = [f64; 4]>,
+    ) -> &mut Self {
+        self.add(Item::Series { name: name.into(), ink, kind, points: points.into_iter().collect() })
+    }
+
     /// A curve through `points`.
-    pub fn line(&mut self, series: &str, ink: Ink, points: impl IntoIterator<Item = [f64; 2]>) -> &mut Self {
-        self.add(Item::Line { series: series.into(), ink, points: points.into_iter().collect() })
+    pub fn line(&mut self, name: &str, ink: Ink, points: impl IntoIterator<Item = [f64; 2]>) -> &mut Self {
+        self.series(name, ink, Kind::Line, points.into_iter().map(alone))
     }
 
     /// The curve y = f(x) over the whole axis, through 241 evenly spaced points.
-    pub fn curve(&mut self, series: &str, ink: Ink, f: impl Fn(f64) -> f64) -> &mut Self {
-        let (low, high) = (self.x.low, self.x.high);
-        self.curve_between(series, ink, low, high, f)
+    pub fn curve(&mut self, name: &str, ink: Ink, f: impl Fn(f64) -> f64) -> &mut Self {
+        self.curve_between(name, ink, [self.x.low, self.x.high], f)
     }
 
     /// The curve y = f(x) for x from `low` to `high`.
     pub fn curve_between(
         &mut self,
-        series: &str,
+        name: &str,
         ink: Ink,
-        low: f64,
-        high: f64,
+        [low, high]: [f64; 2],
         f: impl Fn(f64) -> f64,
     ) -> &mut Self {
         let along = (0..=240).map(|i| self.x.between(low, high, f64::from(i) / 240.0));
         let points: Vec<_> = along.map(|x| [x, f(x)]).filter(|[_, y]| y.is_finite()).collect();
-        self.line(series, ink, points)
+        self.line(name, ink, points)
     }
 
     /// A horizontal line across the panel.
-    pub fn level(&mut self, series: &str, ink: Ink, y: f64) -> &mut Self {
-        self.line(series, ink, [[self.x.low, y], [self.x.high, y]])
+    pub fn level(&mut self, name: &str, ink: Ink, y: f64) -> &mut Self {
+        self.line(name, ink, [[self.x.low, y], [self.x.high, y]])
     }
 
     /// A vertical line across the panel.
-    pub fn upright(&mut self, series: &str, ink: Ink, x: f64) -> &mut Self {
-        self.line(series, ink, [[x, self.y.low], [x, self.y.high]])
+    pub fn upright(&mut self, name: &str, ink: Ink, x: f64) -> &mut Self {
+        self.line(name, ink, [[x, self.y.low], [x, self.y.high]])
     }
 
     /// The region between low and high, given as (x, low, high).
-    pub fn band(&mut self, series: &str, ink: Ink, points: impl IntoIterator<Item = [f64; 3]>) -> &mut Self {
-        self.add(Item::Band { series: series.into(), ink, points: points.into_iter().collect() })
+    pub fn band(&mut self, name: &str, ink: Ink, points: impl IntoIterator<Item = [f64; 3]>) -> &mut Self {
+        let points = points.into_iter().map(|[x, low, high]| [x, f64::NAN, low, high]);
+        self.series(name, ink, Kind::Band, points)
     }
 
     /// Measured points.
     pub fn marks(
         &mut self,
-        series: &str,
+        name: &str,
         ink: Ink,
         marker: Marker,
         points: impl IntoIterator<Item = [f64; 2]>,
     ) -> &mut Self {
-        self.add(Item::Marks { series: series.into(), ink, marker, points: points.into_iter().collect() })
+        self.series(name, ink, Kind::Marks(marker), points.into_iter().map(alone))
     }
 
     /// Measured points with their intervals, given as (x, y, low, high).
     pub fn error_bars(
         &mut self,
-        series: &str,
+        name: &str,
         ink: Ink,
         marker: Marker,
         points: impl IntoIterator<Item = [f64; 4]>,
     ) -> &mut Self {
-        self.add(Item::ErrorBars { series: series.into(), ink, marker, points: points.into_iter().collect() })
+        self.series(name, ink, Kind::Marks(marker), points)
     }
 
     /// Bars from the axis up to y, centred on x.
     pub fn bars(
         &mut self,
-        series: &str,
+        name: &str,
         ink: Ink,
         width: f64,
         points: impl IntoIterator<Item = [f64; 2]>,
     ) -> &mut Self {
-        self.add(Item::Bars { series: series.into(), ink, width, points: points.into_iter().collect() })
+        self.series(name, ink, Kind::Bars(width), points.into_iter().map(alone))
     }
 
     /// A shaded region between two values of x.
@@ -228,12 +225,10 @@ impl Panel {
 
     /// Names the line or the marks added last, where there is room beside them.
     pub fn named(&mut self, text: &str) -> &mut Self {
-        let (ink, beside) = match self.items.last() {
-            Some(Item::Line { ink, points, .. }) => (*ink, self.along(points)),
-            Some(Item::Marks { ink, points, .. }) => (*ink, points.clone()),
-            _ => return self,
-        };
-        self.add(Item::Label { ink, beside, text: text.into() })
+        let Some(Item::Series { ink, kind, points, .. }) = self.items.last() else { return self };
+        let points: Vec<_> = points.iter().map(|&[x, y, ..]| [x, y]).collect();
+        let beside = if *kind == Kind::Line { self.along(&points) } else { points };
+        self.add(Item::Label { ink: *ink, beside, text: text.into() })
     }
 
     /// Points of a line, fiftieths of the axes apart.
@@ -275,4 +270,9 @@ impl Panel {
         self.items.push(item);
         self
     }
+}
+
+/// A point without an interval.
+fn alone([x, y]: [f64; 2]) -> [f64; 4] {
+    [x, y, f64::NAN, f64::NAN]
 }

@@ -9,8 +9,8 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontFamily, register_font};
 
 use super::document::{DASHES, MM};
-use super::labels::{LINE, Labels, size, width};
-use super::panel::{Ink, Item, Marker, Panel, Side};
+use super::labels::{LINE, Labels, clip_segment, size, width};
+use super::panel::{Ink, Item, Kind, Marker, Panel, Side};
 use super::{Axis, Plot};
 
 /// Units per typographic point.
@@ -84,11 +84,12 @@ impl Frame<'_> {
     }
 
     /// The parts of a curve inside the axes, in units.
-    fn clip(&self, points: &[[f64; 2]]) -> Vec<Vec<(i32, i32)>> {
+    fn clip(&self, points: impl Iterator<Item = [f64; 2]>) -> Vec<Vec<(i32, i32)>> {
+        let places: Vec<_> = points.map(|point| self.place(point)).collect();
         let mut runs: Vec<Vec<(i32, i32)>> = Vec::new();
         let mut end = None;
-        for (from, to) in points.iter().zip(points.iter().skip(1)) {
-            let inside = clip_segment(self.place(*from), self.place(*to));
+        for (from, to) in places.iter().zip(places.iter().skip(1)) {
+            let inside = clip_segment(*from, *to);
             if let Some([a, b]) = inside {
                 match runs.last_mut() {
                     Some(run) if end == Some(a) => run.push(self.lattice(b)),
@@ -99,29 +100,6 @@ impl Frame<'_> {
         }
         runs
     }
-}
-
-/// The part of a segment inside the unit square (Liang & Barsky 1984).
-fn clip_segment(from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
-    let (mut enter, mut leave) = (0.0f64, 1.0f64);
-    let step = [to[0] - from[0], to[1] - from[1]];
-    for (start, step) in from.into_iter().zip(step) {
-        for (direction, room) in [(-step, start), (step, 1.0 - start)] {
-            if direction == 0.0 || !direction.is_finite() {
-                if room < 0.0 || !direction.is_finite() {
-                    return None;
-                }
-            } else if direction < 0.0 {
-                enter = enter.max(room / direction);
-            } else {
-                leave = leave.min(room / direction);
-            }
-        }
-    }
-    let along = |t: f64| [from[0] + t * step[0], from[1] + t * step[1]];
-    let a = if enter == 0.0 { from } else { along(enter) };
-    let b = if leave == 1.0 { to } else { along(leave) };
-    (enter <= leave).then_some([a, b])
 }
 
 fn draw_panel(panel: &Panel, area: &Area<'_>) -> Drawn {
@@ -153,24 +131,20 @@ fn draw_labels(frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
     let real = |(x, y): (i32, i32)| [f64::from(x), f64::from(y)];
     let at = |point: &[f64; 2]| real(frame.at(*point));
     let mut labels = Labels::new([frame.left, frame.top], [frame.right, frame.bottom], 1.0 / PT);
-    let marker = [6.0; 2];
     let mut all = Vec::new();
     for item in &frame.panel.items {
         match item {
-            Item::Line { points, .. } => {
-                for run in frame.clip(points) {
+            Item::Series { kind: Kind::Line, points, .. } => {
+                for run in frame.clip(points.iter().map(|&[x, y, ..]| [x, y])) {
                     labels.avoid(&run.into_iter().map(real).collect::<Vec<_>>());
                 }
             }
-            Item::Marks { points, .. } => {
-                for point in points.iter().filter(|point| frame.holds(**point)) {
-                    labels.keep_off(at(point), marker);
-                }
-            }
-            Item::ErrorBars { points, .. } => {
+            Item::Series { kind: Kind::Marks(_), points, .. } => {
                 for &[x, y, low, high] in points.iter().filter(|[x, y, ..]| frame.holds([*x, *y])) {
-                    labels.keep_off(at(&[x, y]), marker);
-                    labels.avoid(&[at(&[x, low]), at(&[x, high])]);
+                    labels.keep_off(at(&[x, y]), [6.0; 2]);
+                    if low <= high {
+                        labels.avoid(&[at(&[x, low]), at(&[x, high])]);
+                    }
                 }
             }
             Item::Arrow { from, to, .. } => labels.avoid(&[at(from), at(to)]),
@@ -196,7 +170,7 @@ fn draw_labels(frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
             }
             Item::Label { ink, beside, text } => all.push((ink, beside, text)),
             // what fills an area may lie under a label, and what belongs far outside is not drawn
-            Item::Band { .. } | Item::Bars { .. } | Item::Text { .. } => {}
+            Item::Series { .. } | Item::Text { .. } => {}
         }
     }
     // those with the fewest places to choose from first
@@ -255,36 +229,8 @@ fn draw_axes(frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
 }
 
 fn draw_item(item: &Item, frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
-    let Axis { low, high, .. } = frame.panel.y;
-    let clamp = |y: f64| y.clamp(low, high);
     match item {
-        Item::Line { ink, points, .. } => {
-            frame.clip(points).into_iter().try_for_each(|run| path(run, stroke(*ink), area))
-        }
-        Item::Band { ink, points, .. } => {
-            let inside: Vec<_> = points.iter().filter(|[x, ..]| frame.panel.x.holds(*x)).collect();
-            let lows = inside.iter().map(|[x, low, _]| frame.at([*x, clamp(*low)]));
-            let highs = inside.iter().rev().map(|[x, _, high]| frame.at([*x, clamp(*high)]));
-            area.draw(&Polygon::new(lows.chain(highs).collect::<Vec<_>>(), colour(*ink).mix(0.25)))
-        }
-        Item::Marks { ink, marker, points, .. } => {
-            let mut inside = points.iter().filter(|point| frame.holds(**point));
-            inside.try_for_each(|point| draw_marker(frame.at(*point), *ink, *marker, area))
-        }
-        Item::ErrorBars { ink, marker, points, .. } => {
-            let bar = colour(*ink).stroke_width((0.8 * PT) as u32);
-            let mut inside = points.iter().filter(|[x, y, ..]| frame.holds([*x, *y]));
-            inside.try_for_each(|&[x, y, low, high]| {
-                let runs = frame.clip(&[[x, low], [x, high]]);
-                runs.into_iter().try_for_each(|run| path(run, bar, area))?;
-                draw_marker(frame.at([x, y]), *ink, *marker, area)
-            })
-        }
-        Item::Bars { ink, width, points, .. } => points.iter().try_for_each(|&[x, y]| {
-            let [from, to] = [x - 0.5 * width, x + 0.5 * width];
-            let corners = [frame.at([from, low]), frame.at([to, clamp(y)])];
-            area.draw(&Rectangle::new(corners, colour(*ink).mix(0.45).filled()))
-        }),
+        Item::Series { ink, kind, points, .. } => draw_series(*ink, *kind, points, frame, area),
         Item::Arrow { ink, from, to } if frame.is_near(*from) && frame.is_near(*to) => {
             draw_arrow(frame.at(*from), frame.at(*to), *ink, area)
         }
@@ -294,6 +240,36 @@ fn draw_item(item: &Item, frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
         }
         // a shade lies under the axes, labels above all else; and what belongs far outside is not drawn
         Item::Shade { .. } | Item::Label { .. } | Item::Arrow { .. } | Item::Text { .. } => Ok(()),
+    }
+}
+
+fn draw_series(ink: Ink, kind: Kind, points: &[[f64; 4]], frame: &Frame<'_>, area: &Area<'_>) -> Drawn {
+    let Axis { low: foot, high: top, .. } = frame.panel.y;
+    match kind {
+        Kind::Line => {
+            let mut runs = frame.clip(points.iter().map(|&[x, y, ..]| [x, y])).into_iter();
+            runs.try_for_each(|run| path(run, stroke(ink), area))
+        }
+        Kind::Band => {
+            let inside: Vec<_> = points.iter().filter(|[x, ..]| frame.panel.x.holds(*x)).collect();
+            let lows = inside.iter().map(|[x, _, low, _]| frame.at([*x, low.clamp(foot, top)]));
+            let highs = inside.iter().rev().map(|[x, .., high]| frame.at([*x, high.clamp(foot, top)]));
+            area.draw(&Polygon::new(lows.chain(highs).collect::<Vec<_>>(), colour(ink).mix(0.25)))
+        }
+        Kind::Marks(marker) => {
+            let bar = colour(ink).stroke_width((0.8 * PT) as u32);
+            let mut inside = points.iter().filter(|[x, y, ..]| frame.holds([*x, *y]));
+            inside.try_for_each(|&[x, y, low, high]| {
+                let runs = frame.clip([[x, low], [x, high]].into_iter());
+                runs.into_iter().try_for_each(|run| path(run, bar, area))?;
+                draw_marker(frame.at([x, y]), ink, marker, area)
+            })
+        }
+        Kind::Bars(width) => points.iter().try_for_each(|&[x, y, ..]| {
+            let [from, to] = [x - 0.5 * width, x + 0.5 * width];
+            let corners = [frame.at([from, foot]), frame.at([to, y.clamp(foot, top)])];
+            area.draw(&Rectangle::new(corners, colour(ink).mix(0.45).filled()))
+        }),
     }
 }
 
@@ -380,20 +356,4 @@ fn font(points: f64, colour: &impl Color, horizontal: HPos, vertical: VPos) -> T
     FontDesc::new(FontFamily::SansSerif, size, FontStyle::Normal)
         .color(colour)
         .pos(Pos::new(horizontal, vertical))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn segments_are_clipped_to_the_unit_square() {
-        assert_eq!(clip_segment([0.2, 0.2], [0.8, 0.4]), Some([[0.2, 0.2], [0.8, 0.4]]));
-        assert_eq!(clip_segment([-1.0, 0.5], [3.0, 0.5]), Some([[0.0, 0.5], [1.0, 0.5]]));
-        assert_eq!(clip_segment([0.5, 0.5], [0.5, 2.5]), Some([[0.5, 0.5], [0.5, 1.0]]));
-        assert_eq!(clip_segment([2.0, 0.0], [2.0, 1.0]), None);
-        assert_eq!(clip_segment([-1.0, 0.9], [0.5, 2.4]), None);
-        assert_eq!(clip_segment([0.5, 0.5], [f64::INFINITY, 0.5]), None);
-        assert_eq!(clip_segment([0.5, 0.5], [0.5, f64::NAN]), None);
-    }
 }

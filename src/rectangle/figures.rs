@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::estimator::{Estimator, from_fn};
 use crate::numbers::typeset;
-use crate::plot::{Axis, Figure, Ink, Marker, Panel, Plot, Side};
+use crate::plot::{Axis, Figure, Ink, Marker, Panel, Plot, Side, extent};
 use crate::rectangle::{Integrand, Rectangle};
 use crate::run::{Budget, estimate};
 
@@ -140,10 +140,8 @@ fn mean_of(rectangle: Rectangle, f: Integrand, n: u64) -> impl Estimator {
 
 /// A panel that holds all curves, with room for their labels on the right.
 fn panel(heading: &str, curves: &[Curve]) -> Panel {
-    let all = || curves.iter().flat_map(|curve| curve.measured.iter().chain(curve.exact.iter().flatten()));
-    let low = all().fold(f64::INFINITY, |low, [_, y]| low.min(*y));
-    let high = all().fold(0.0, |high: f64, [_, y]| high.max(*y));
-    let [low, high] = if low <= high { [low * 0.3, high * 1.5] } else { [0.1, 10.0] };
+    let all = curves.iter().flat_map(|curve| curve.measured.iter().chain(curve.exact.iter().flatten()));
+    let [low, high] = extent(all.map(|[_, y]| *y)).map_or([0.1, 10.0], |[low, high]| [low * 0.3, high * 1.5]);
     let ticks = [(1.0, "1"), (10.0, "10"), (100.0, "10²"), (1000.0, "10³"), (1e4, "10⁴")];
     let mut panel = Panel::new(
         heading,
@@ -210,8 +208,7 @@ fn apart(wanted: &[(f64, f64)]) -> Vec<f64> {
 
 /// A line of slope −1/2 below the curves.
 fn guide(panel: &mut Panel, curves: &[Curve]) {
-    let lowest = curves.iter().map(Curve::end).fold(f64::INFINITY, f64::min);
-    if lowest.is_finite() {
+    if let Some([lowest, _]) = extent(curves.iter().map(Curve::end)) {
         let at = |n: f64| [n, 0.5 * lowest * (16384.0 / n).sqrt()];
         panel.line("slope −1/2", Ink::Grey, [at(4.0), at(16384.0)]);
         panel.text(Ink::Grey, at(600.0), Side::Left, "slope −1/2");

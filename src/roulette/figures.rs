@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::estimator::Estimator;
 use crate::numbers::{equals, typeset};
-use crate::plot::{Axis, Figure, Ink, Marker, Panel, Plot, Side};
+use crate::plot::{Axis, Figure, Ink, Marker, Panel, Plot, Side, extent};
 use crate::roulette::{LightModel, Roulette};
 use crate::run::{Budget, estimate};
 use crate::stream::Stream;
@@ -98,7 +98,7 @@ pub fn mean_bounces(p_rr: [f64; 2], draws: u64, seed: u64) -> Result<Figure> {
     );
     panel
         .band("± standard deviation", Ink::Blue, band)
-        .curve_between("E[N]", Ink::Blue, 0.001, 0.999, |p| of(p).map_or(f64::NAN, |(mean, _)| mean))
+        .curve_between("E[N]", Ink::Blue, [0.001, 0.999], |p| of(p).map_or(f64::NAN, |(mean, _)| mean))
         .marks("measured", Ink::Black, Marker::Disc, measured)
         .note(Ink::Blue, [0.0, 0.93], Side::Right, "E[N] = p/(1 − p)")
         .note(Ink::Blue, [0.0, 0.84], Side::Right, "band: ±√p/(1 − p)");
@@ -132,13 +132,10 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
     // of the axis at most 0.3 shaded
     let low = (edge - 0.43 * (1.0 - edge)).max(0.0);
     // from where all three are finite to near 1, without the outermost parts, where they grow without bound
-    let values: Vec<f64> = (4..98)
+    let values = (4..98)
         .map(|percent| edge + 0.01 * f64::from(percent) * (1.0 - edge))
-        .flat_map(|q| [variance(q), cost(q), product(q)])
-        .filter(|value| value.is_finite() && *value > 0.0)
-        .collect();
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min).min(1.0);
-    let most = values.iter().copied().fold(4.0, f64::max);
+        .flat_map(|q| [variance(q), cost(q), product(q)]);
+    let [least, most] = extent(values).map_or([1.0, 4.0], |[least, most]| [least.min(1.0), most.max(4.0)]);
     let (albedo, v) = (typeset(albedo, 12), typeset(model.visibility(), 12));
     let mut panel = Panel::new(
         &format!("ρ {}, v {}", equals(model.albedo(), 4), equals(model.visibility(), 4)),
@@ -155,7 +152,7 @@ pub fn roulette_trade(model: &LightModel, q: f64) -> Result<Figure> {
         ("cost 1/(1 − q)", Ink::Vermilion, low, &cost),
         ("variance × cost", Ink::Green, edge + 1e-6, &product),
     ] {
-        panel.curve_between(name, ink, from, 0.9995, of).named(name);
+        panel.curve_between(name, ink, [from, 0.9995], of).named(name);
     }
     for (at, word, marker) in marked {
         let value = product(at);
@@ -199,11 +196,9 @@ pub fn truncation(model: &LightModel, q: f64, max_k: u64, replicates: u64, seed:
         let [short, long] = [short_paths, long_paths].map(|paths| root(paths.mean_square_error(c)));
         [root(roulette.mean_square_error(c)), short, long]
     });
-    let sizes = || errors.into_iter().flatten().filter(|size| size.is_finite() && *size > 0.0);
-    let most = sizes().fold(0.0, f64::max);
-    let least = sizes().fold(f64::INFINITY, f64::min).max(1e-6 * most);
-    let exact = most == 0.0;
-    let (least, most) = if exact { (0.1, 1.0) } else { (least, most) };
+    let range = extent(errors.into_iter().flatten());
+    let exact = range.is_none();
+    let [least, most] = range.map_or([0.1, 1.0], |[least, most]| [least.max(1e-6 * most), most]);
     let [albedo, v, kept] = [model.albedo(), model.visibility(), q].map(|value| typeset(value, 12));
     let mut panel = Panel::new(
         &format!("ρ {}, v {}, q {}", equals(model.albedo(), 4), equals(model.visibility(), 4), equals(q, 4)),

@@ -188,25 +188,20 @@ mod tests {
     }
 
     #[test]
-    fn batches_last_as_long_as_asked_for() {
-        for (each, aim) in [(1e-9, 1e-3), (1e-6, 1e-3), (3e-7, 0.02), (1e-4, 0.25)] {
-            let draws = draws_that_take(aim, clock(each, 0.0, &[])).unwrap();
-            // a draw more or less
-            assert!((draws as f64 * each - aim).abs() <= 1.01 * each, "{each} {aim}: {draws}");
-        }
-    }
-
-    #[test]
-    fn warming_up_takes_the_time_of_four_batches() {
-        for each in [1e-9, 1.3e-9, 1.9e-9, 2.1e-6] {
+    fn batches_last_as_long_as_asked_for_and_warming_up_as_long_as_four() {
+        for (each, aim) in
+            [(1e-9, 1e-3), (1.3e-9, 1e-3), (1.9e-9, 1e-3), (1e-6, 1e-3), (3e-7, 0.02), (1e-4, 0.25)]
+        {
             let (mut ticking, mut all) = (clock(each, 0.0, &[]), 0.0);
-            let timed = |draws| {
+            let draws = draws_that_take(aim, |draws| {
                 let taken = ticking(draws)?;
                 all += taken;
                 Ok(taken)
-            };
-            draws_that_take(1e-3, timed).unwrap();
-            assert!(all <= WARM as f64 * 1e-3 && all >= 1e-3, "{each}: {all}");
+            });
+            let draws = draws.unwrap();
+            // a draw more or less
+            assert!((draws as f64 * each - aim).abs() <= 1.01 * each, "{each} {aim}: {draws}");
+            assert!(all <= WARM as f64 * aim && all >= aim, "{each} {aim}: {all}");
         }
     }
 

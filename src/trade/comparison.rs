@@ -42,21 +42,6 @@ impl Comparison {
     /// the difference. These follow from the relative std errors of variances (from the spread over batches)
     /// and times (of a median, from the quartiles). A rival with a heavy tail is never really better, since
     /// its variance may be larger than measured.
-    ///
-    /// ```
-    /// use unbiased::from_fn;
-    /// use unbiased::trade::{Rival, Trade};
-    ///
-    /// let one = Rival::new("one", from_fn(|rng| rng.uniform()));
-    /// let same = Rival::new("the same", from_fn(|rng| rng.uniform()));
-    /// let last = from_fn(|rng| (0..100).map(|_| rng.uniform()).fold(0.0, |_, u| u));
-    /// let late = Rival::new("a hundred, one of them used", last);
-    /// let found = Trade::new(1, 0.5)?.seconds_each(0.02)?.compare(&[one, same, late])?;
-    /// let ranking = found.ranking();
-    /// assert_eq!(ranking[0].rank, 1);
-    /// assert!(ranking[2].rival.name.starts_with("a hundred") && ranking[2].of_the_best < 0.5);
-    /// # Ok::<(), unbiased::Error>(())
-    /// ```
     pub fn ranking(&self) -> Vec<Ranked<'_>> {
         let mut order: Vec<&Measured> =
             self.rivals.iter().filter(|rival| rival.nature != Nature::Biased).collect();

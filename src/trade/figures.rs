@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::numbers::two_digits;
 use crate::plot::Marker::{self, Cross, Disc, Ring, Square, Triangle};
-use crate::plot::{Axis, Figure, Ink, Panel, Plot, Side};
+use crate::plot::{Axis, Figure, Ink, Panel, Plot, Side, extent};
 use crate::trade::{Comparison, Measured, Nature};
 
 /// For each rival an ink, in turn, which implies a dash pattern, and a marker: all differ even in grey.
@@ -30,19 +30,6 @@ type Drawn<'a> = (&'a Measured, (Ink, Marker));
 /// of infinite variance, is named as well; if a bias is not seen, the line ends at the error below which the
 /// bias may dominate. At most sixteen rivals are drawn; the description names those left out. `name` is the
 /// file name, `title` says what is compared.
-///
-/// ```
-/// use unbiased::from_fn;
-/// use unbiased::trade::{Rival, Trade, figures};
-///
-/// let one = from_fn(|rng| rng.uniform().sqrt());
-/// let two = from_fn(|rng| 0.5 * (rng.uniform().sqrt() + rng.uniform().sqrt()));
-/// let rivals = [Rival::new("one", one), Rival::new("two", two)];
-/// let found = Trade::new(1, 2.0 / 3.0)?.seconds_each(0.01)?.compare(&rivals)?;
-/// let figure = figures::comparison("trade_mine", "One point or two", &found)?;
-/// assert!(figure.svg().starts_with("<svg"));
-/// # Ok::<(), unbiased::Error>(())
-/// ```
 ///
 /// # Errors
 /// If it cannot be drawn.
@@ -104,18 +91,13 @@ fn error(rival: &Measured, cost: &dyn Fn(&Measured) -> f64, spent: f64) -> f64 {
 
 /// The errors against `cost`, over five powers of ten.
 fn panel([heading, unit, axis]: [&str; 3], lines: &[Drawn<'_>], cost: &dyn Fn(&Measured) -> f64) -> Panel {
-    let least =
-        lines.iter().map(|(rival, _)| cost(rival)).filter(|cost| *cost > 0.0).fold(f64::INFINITY, f64::min);
-    let low = if least.is_finite() { 10f64.powf(least.log10().floor() + 1.0) } else { 1.0 };
+    let costs = extent(lines.iter().map(|(rival, _)| cost(rival)));
+    let low = costs.map_or(1.0, |[least, _]| 10f64.powf(least.log10().floor() + 1.0));
     let high = low * SPAN;
     let ends = lines.iter().flat_map(|(rival, _)| [low, high].map(|spent| error(rival, cost, spent)));
-    let (bottom, top) = ends
-        .filter(|error| *error > 0.0)
-        .fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), e| (low.min(e), high.max(e)));
-    let (bottom, top) = if bottom < top {
-        (10f64.powf(bottom.log10().floor()), 10f64.powf(top.log10().ceil()))
-    } else {
-        (1e-3, 1.0)
+    let [bottom, top] = match extent(ends) {
+        Some([low, high]) if low < high => [10f64.powf(low.log10().floor()), 10f64.powf(high.log10().ceil())],
+        _ => [1e-3, 1.0],
     };
     let mut panel = Panel::new(heading, Axis::log(unit, low, high), Axis::log(axis, bottom, top));
     for (index, (rival, (ink, marker))) in lines.iter().enumerate() {
@@ -170,9 +152,9 @@ fn efficiencies(drawn: &[Drawn<'_>], comparison: &Comparison) -> Panel {
         let part = rival.efficiency() / best;
         (part.is_finite() && part > 0.0).then_some(part)
     };
-    let parts: Vec<f64> = drawn.iter().filter_map(|(rival, _)| part(rival)).collect();
-    let most = parts.iter().fold(1.0, |most: f64, part| most.max(*part));
-    let least = parts.iter().fold(0.3 * most, |least: f64, part| least.min(*part));
+    let [least, most] = extent(drawn.iter().filter_map(|(rival, _)| part(rival))).unwrap_or([1.0; 2]);
+    let most = most.max(1.0);
+    let least = least.min(0.3 * most);
     // so that even the shortest line shows its dash pattern
     let low = most * (least / most).powf(1.5);
     let row = |index: usize| (drawn.len() - index) as f64;

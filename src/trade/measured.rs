@@ -110,22 +110,6 @@ impl Measured {
 
     /// Whether the bias is more than three of its std errors, and more than rounding. That happens for 1 in
     /// 370 rivals whose bias is 0. A bias that is not seen counts as 0.
-    ///
-    /// ```
-    /// use unbiased::from_fn;
-    /// use unbiased::trade::{Nature, Reach, Rival, Trade};
-    ///
-    /// // E[U] = 1/2, in 24 bits
-    /// let short = from_fn(|rng| f64::from(rng.uniform() as f32));
-    /// let rival = Rival::new("f32", short).nature(Nature::Biased);
-    /// let found = Trade::new(1, 0.5)?.seconds_each(0.01)?.compare(&[rival])?;
-    /// let short = &found.rivals[0];
-    /// assert!(!short.bias_seen());
-    /// // 1 % is reached, as the bias is known to be smaller; 1e-7 may never be
-    /// assert!(matches!(short.seconds_to(0.01), Reach::After(_)));
-    /// assert!(matches!(short.seconds_to(1e-7), Reach::AtLeast(_)));
-    /// # Ok::<(), unbiased::Error>(())
-    /// ```
     pub fn bias_seen(&self) -> bool {
         let bias = self.bias().abs();
         bias > REAL * self.bias_error() && bias > 8.0 * f64::EPSILON * self.truth.abs()

@@ -39,14 +39,6 @@ pub struct Rival<'a> {
 
 impl<'a> Rival<'a> {
     /// An unbiased estimator of finite variance, with its name for tables and figures.
-    ///
-    /// ```
-    /// use unbiased::from_fn;
-    /// use unbiased::trade::Rival;
-    ///
-    /// // ∫₀¹ x² dx
-    /// let plain = Rival::new("one point", from_fn(|rng| rng.uniform().powi(2)));
-    /// ```
     pub fn new(name: impl Into<String>, estimator: impl Estimator + 'a) -> Self {
         Self { name: name.into(), series: None, estimator: Box::new(estimator), nature: Nature::Unbiased }
     }

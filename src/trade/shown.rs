@@ -117,16 +117,6 @@ impl Comparison {
     /// cell is empty if the value is unknown or does not apply. `nature` is `unbiased`, `biased` or
     /// `infinite_variance`; `crossing`, when the best unbiased rival overtakes a biased one, is `at`,
     /// `from_the_start` or `unknown`.
-    ///
-    /// ```
-    /// use unbiased::from_fn;
-    /// use unbiased::trade::{Rival, Trade};
-    ///
-    /// let rival = Rival::new("U", from_fn(|rng| rng.uniform()));
-    /// let found = Trade::new(1, 0.5)?.seconds_each(0.01)?.compare(&[rival])?;
-    /// assert!(found.csv().starts_with("name,series,nature,draws,mean,"));
-    /// # Ok::<(), unbiased::Error>(())
-    /// ```
     pub fn csv(&self) -> String {
         let mut csv = COLUMNS.map(|(name, _)| name).join(",") + "\n";
         let places = self.ranking();
