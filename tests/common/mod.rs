@@ -3,6 +3,8 @@
 #![allow(dead_code, unused_imports)] // each test takes what it needs
 
 mod alarms;
+pub mod notebook;
+pub mod programs;
 
 pub use alarms::{BUDGETS, alarm, deviations};
 use proptest::prelude::*;
