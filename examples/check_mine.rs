@@ -20,15 +20,15 @@ use unbiased::workbook;
 //
 // A closure of a problem p and a source of random numbers: rng.uniform() is uniform in [0, 1).
 //
-// question  closure                      one draw 1.1       |p: &Samples, rng|           a sample of the
-// exponential distribution with rate p.rate 2.1       |p: &Integral, rng|          of ∫∫ p.f(x, y) over
-// p.rectangle = [a, b] × [c, d], where
+// question  closure                      one draw
+// 1.1       |p: &Samples, rng|           a sample of the exponential distribution with rate p.rate
+// 2.1       |p: &Integral, rng|          of ∫∫ p.f(x, y) over p.rectangle = [a, b] × [c, d], where
 //                                        [[a, b], [c, d]] = p.ends()
 // 3.4, 3.5  |p: &Reflection, rng|        of the reflected radiance, for the incoming radiance
 //                                        p.light(&direction) and the albedo p.albedo
-// 4.3       |p: &LightOfPaths, rng|      of the radiance that leaves p.room.point() after p.bounces() 5.1
-// |p: &Bounces, rng|           a number of bounces at p.p_rr 5         |p: &Wrapped, rng|           an X_rr
-// at p.p_rr; p.x(rng) draws X
+// 4.3       |p: &LightOfPaths, rng|      of the radiance that leaves p.room.point() after p.bounces()
+// 5.1       |p: &NumberOfBounces, rng|   a number of bounces at p.p_rr
+// 5         |p: &Wrapped, rng|           an X_rr at p.p_rr; p.x(rng) draws X
 //
 // Each problem type is in the module `mistakes` of its topic, such as `unbiased::lambertian::mistakes`.
 

@@ -11,25 +11,29 @@ use unbiased::inversion::Exponential;
 use unbiased::lambertian::hemisphere::Hemisphere;
 use unbiased::paths::room::form_factor;
 use unbiased::roulette::{LightModel, Roulette};
-use unbiased::workbook::{self, Answer, Appendix, Options, Table, extremes};
+use unbiased::workbook::{self, Answer, Appendix, Contents, Options, Table, extremes};
 use unbiased::{Estimate, Result};
 
-/// One formula at one input.
-struct Extreme {
-    question: &'static str,
-    obvious: &'static str,
-    input: &'static str,
-    gives: f64,
-    truth: f64,
-    here: f64,
-}
+/// One formula at one input: its question, how it is written, and the input; what it gives, the truth, and
+/// what the crate gives.
+type Extreme = ([&'static str; 3], [f64; 3]);
 
-/// The appendix, for these options.
-pub fn answer(options: &Options) -> Result<Appendix> {
+/// The appendix that shows them.
+pub const APPENDIX: Appendix = Appendix {
+    example: "extremes",
+    title: "Where the obvious code breaks",
+    about: "Where the obvious code breaks: textbook formulas, inputs at which they fail in floating point, \
+            and what the crate gives there.",
+    seconds: None,
+    why: "it evaluates each formula once, and has no student edition and no hint",
+    make,
+};
+
+fn make(options: &Options) -> Result<Contents> {
     let extremes = extremes()?;
     let mut rows = Vec::new();
     let mut records = Vec::new();
-    for Extreme { question, obvious, input, gives, truth, here } in extremes {
+    for ([question, obvious, input], [gives, truth, here]) in extremes {
         let cells =
             [obvious.into(), input.into(), show(gives), ulps(gives, truth), show(here), ulps(here, truth)];
         rows.push(cells.to_vec());
@@ -39,9 +43,7 @@ pub fn answer(options: &Options) -> Result<Appendix> {
         );
         records.push(Answer::new(question, &format!("{what}, in the crate")).truth(truth).value(here));
     }
-    Ok(Appendix {
-        example: "extremes",
-        title: "Where the obvious code breaks",
+    Ok(Contents {
         text: "Each formula is right on paper and fails in floating point somewhere: a difference of nearly \
                equal numbers keeps none of their digits, a square overflows, a sum loses small terms. An \
                error is counted in ulps, units of the last place of the truth, which was computed with \
@@ -74,102 +76,70 @@ fn extremes() -> Result<Vec<Extreme>> {
     // a light of 2 µm, 3 m above
     let tiny =
         [[-1e-6, -1e-6], [1e-6, -1e-6], [1e-6, 1e-6], [-1e-6, 1e-6]].map(|[x, y]| DVec3::new(x, y, 3.0));
-    let extreme = |question, obvious, input, gives, truth, here| Extreme {
-        question,
-        obvious,
-        input,
-        gives,
-        truth,
-        here,
-    };
     Ok(vec![
-        extreme(
-            "1.1",
-            "−ln(1 − u)",
-            "u = 1e-10",
-            -(1.0 - 1e-10f64).ln(),
-            1.000_000_000_05e-10,
-            exponential.inverse_cdf(1e-10)?,
+        (
+            ["1.1", "−ln(1 − u)", "u = 1e-10"],
+            [-(1.0 - 1e-10f64).ln(), 1.000_000_000_05e-10, exponential.inverse_cdf(1e-10)?],
         ),
-        extreme(
-            "1.1",
-            "−ln(1 − u)",
-            "u = 1e-20",
-            -(1.0 - 1e-20f64).ln(),
-            1e-20,
-            exponential.inverse_cdf(1e-20)?,
+        (
+            ["1.1", "−ln(1 − u)", "u = 1e-20"],
+            [-(1.0 - 1e-20f64).ln(), 1e-20, exponential.inverse_cdf(1e-20)?],
         ),
-        extreme(
-            "1.2",
-            "1 − exp(−λx)",
-            "λ = 0.37, x = 1e-12",
-            1.0 - (-0.37e-12f64).exp(),
-            3.699_999_999_999_315_4e-13,
-            slow.cdf(1e-12),
+        (
+            ["1.2", "1 − exp(−λx)", "λ = 0.37, x = 1e-12"],
+            [1.0 - (-0.37e-12f64).exp(), 3.699_999_999_999_315_4e-13, slow.cdf(1e-12)],
         ),
-        extreme(
-            "1.2",
-            "1 − F(x)",
-            "λ = 0.37, x = 100",
-            1.0 - slow.cdf(100.0),
-            8.533_047_625_744_069e-17,
-            slow.survival(100.0),
+        (
+            ["1.2", "1 − F(x)", "λ = 0.37, x = 100"],
+            [1.0 - slow.cdf(100.0), 8.533_047_625_744_069e-17, slow.survival(100.0)],
         ),
-        extreme(
-            "3.5",
-            "√(1 − cos² θ)",
-            "U = 1e-20",
-            (1.0 - cosine * cosine).sqrt(),
-            1e-10,
-            Hemisphere::Cosine.direction_of(1e-20, 0.0)?.sin_theta(),
+        (
+            ["3.5", "√(1 − cos² θ)", "U = 1e-20"],
+            [(1.0 - cosine * cosine).sqrt(), 1e-10, Hemisphere::Cosine.direction_of(1e-20, 0.0)?.sin_theta()],
         ),
-        extreme(
-            "4.3",
-            "Σ Θᵢ Γᵢ·n/(2π)",
-            "a light of 2 µm, 3 m away",
-            plain_form_factor(&tiny),
-            1.414_710_605_261_082_2e-13,
-            form_factor(&tiny, DVec3::ZERO, DVec3::Z),
+        (
+            ["4.3", "Σ Θᵢ Γᵢ·n/(2π)", "a light of 2 µm, 3 m away"],
+            [
+                plain_form_factor(&tiny),
+                1.414_710_605_261_082_2e-13,
+                form_factor(&tiny, DVec3::ZERO, DVec3::Z),
+            ],
         ),
-        extreme(
-            "5.1",
-            "exp(k ln p)·(1 − p)",
-            "p = 0.999999, k = 10⁸",
-            (1e8 * p.ln()).exp() * (1.0 - p),
-            3.719_889_966_158_222_4e-50,
-            Roulette::new(p)?.bounces().pmf(100_000_000),
+        (
+            ["5.1", "exp(k ln p)·(1 − p)", "p = 0.999999, k = 10⁸"],
+            [
+                (1e8 * p.ln()).exp() * (1.0 - p),
+                3.719_889_966_158_222_4e-50,
+                Roulette::new(p)?.bounces().pmf(100_000_000),
+            ],
         ),
-        extreme(
-            "5.1",
-            "1 − p^(k + 1)",
-            "1 − p = 10⁻¹⁰, k = 3",
-            1.0 - rare.powi(4),
-            4.000_000_330_361_484e-10,
-            Roulette::new(rare)?.bounces().cdf(3),
+        (
+            ["5.1", "1 − p^(k + 1)", "1 − p = 10⁻¹⁰, k = 3"],
+            [1.0 - rare.powi(4), 4.000_000_330_361_484e-10, Roulette::new(rare)?.bounces().cdf(3)],
         ),
-        extreme(
-            "5.3",
-            "(1 − ρ^(K+1))/(1 − ρ)",
-            "1 − ρ = 10⁻¹², K = 10",
-            (1.0 - nearly_one.powi(11)) / (1.0 - nearly_one),
-            10.999_999_999_945_002,
-            LightModel::new(nearly_one, 1.0)?.truncated(10)?.mean(),
+        (
+            ["5.3", "(1 − ρ^(K+1))/(1 − ρ)", "1 − ρ = 10⁻¹², K = 10"],
+            [
+                (1.0 - nearly_one.powi(11)) / (1.0 - nearly_one),
+                10.999_999_999_945_002,
+                LightModel::new(nearly_one, 1.0)?.truncated(10)?.mean(),
+            ],
         ),
-        extreme(
-            "2.1",
-            "E[X²] − E[X]²",
-            "X = 10⁹, 10⁹ + ¼, …",
-            (squares - mean * mean) * count / (count - 1.0),
-            78.125 / 999.0,
-            Estimate::from_draws(&draws).variance().unwrap_or(f64::NAN),
+        (
+            ["2.1", "E[X²] − E[X]²", "X = 10⁹, 10⁹ + ¼, …"],
+            [
+                (squares - mean * mean) * count / (count - 1.0),
+                78.125 / 999.0,
+                Estimate::from_draws(&draws).variance().unwrap_or(f64::NAN),
+            ],
         ),
-        extreme(
-            "2.1",
-            "√(variance/n)",
-            "X = 3·10²⁰⁰, 10²⁰⁰",
-            (far_squares - 4e200 * 1e200).sqrt(),
-            1e200,
-            Estimate::from_draws(&far).std_error().unwrap_or(f64::NAN),
+        (
+            ["2.1", "√(variance/n)", "X = 3·10²⁰⁰, 10²⁰⁰"],
+            [
+                (far_squares - 4e200 * 1e200).sqrt(),
+                1e200,
+                Estimate::from_draws(&far).std_error().unwrap_or(f64::NAN),
+            ],
         ),
     ])
 }
@@ -201,5 +171,5 @@ fn ulps(value: f64, truth: f64) -> String {
 
 #[allow(dead_code)] // the worksheet takes this file in as a module
 fn main() -> ExitCode {
-    workbook::appendix("extremes", answer)
+    workbook::appendix(&APPENDIX)
 }

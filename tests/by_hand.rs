@@ -7,12 +7,13 @@ mod common;
 
 use std::collections::BTreeSet;
 use std::f64::consts::{LN_2, PI};
+use std::fs;
 
+use common::programs::{folder, run_in};
 use proptest::prelude::*;
-use unbiased::workbook::{
-    Judgement, Number, Options, Question, judge_answer, judge_answer_at, question, questions,
-};
-use unbiased::{Error, Result, Stream};
+use serde_json::Value;
+use unbiased::workbook::{Judgement, Number, Options, Question, judge_answer, question, questions};
+use unbiased::{Error, Stream};
 
 fn numbers() -> impl Iterator<Item = (&'static Question, &'static Number)> {
     questions().flat_map(|question| question.numbers.iter().map(move |number| (question, number)))
@@ -22,16 +23,29 @@ fn number(name: &str) -> (&'static Question, &'static Number) {
     numbers().find(|(question, number)| format!("{}{}", question.id, number.part) == name).unwrap()
 }
 
-fn at(question: &'static Question, parameters: &[(&str, f64)]) -> Options {
+type Parameters = Vec<(&'static str, f64)>;
+
+fn at(question: &Question, parameters: &[(&'static str, f64)]) -> Options {
     let mut options = Options::default();
     for (name, value) in parameters {
         options.set(question, name, &value.to_string()).unwrap();
     }
-    options.for_question(question)
+    options
 }
 
-fn judged(name: &str, text: &str, parameters: &[(&str, f64)], digits: Option<u32>) -> Result<Judgement> {
-    judge_answer_at(name, text, &at(number(name).0, parameters), digits)
+/// What `check_mine` says to answers at these parameters: a row each, with verdict, mistake and reason.
+fn judged(answers: &[(String, String, Parameters)], arguments: &[&str]) -> Vec<Value> {
+    let rows = answers.iter().enumerate().map(|(student, (question, text, parameters))| {
+        let given: Vec<_> = parameters.iter().map(|(name, value)| format!("{name}={value}")).collect();
+        format!("{student},{question},\"{text}\",{}\n", given.join(" "))
+    });
+    let folder = folder();
+    let csv = "student,question,answer,variant\n".to_owned() + &rows.collect::<String>();
+    fs::write(folder.join("answers.csv"), csv).unwrap();
+    let arguments = [&["--answers", "answers.csv", "--json"], arguments].concat();
+    let mut rows = run_in(folder, "check_mine", &arguments, "").rows();
+    rows.truncate(answers.len());
+    rows
 }
 
 fn ids(judgement: &Judgement) -> Vec<&'static str> {
@@ -42,7 +56,7 @@ fn ids(judgement: &Judgement) -> Vec<&'static str> {
 }
 
 /// Nothing near the ends of its domain, where answers need more digits than are given here.
-fn random_parameters(question: &Question, rng: &mut Stream) -> Vec<(&'static str, f64)> {
+fn random_parameters(question: &Question, rng: &mut Stream) -> Parameters {
     let own = question.parameters.iter().map(|parameter| {
         let u = rng.uniform();
         let value = match parameter.name {
@@ -60,34 +74,37 @@ fn random_parameters(question: &Question, rng: &mut Stream) -> Vec<(&'static str
 #[test]
 fn every_slip_is_found_again_at_any_parameters() {
     let close = |a: f64, b: f64| (a - b).abs() <= 1e-6;
+    let (mut answers, mut expected) = (Vec::new(), Vec::new());
     for (question, number) in numbers() {
         let name = format!("{}{}", question.id, number.part);
         let mut rng = Stream::new(common::seed(11), 0);
         for _ in 0..200 {
-            let options = at(question, &random_parameters(question, &mut rng));
+            let parameters = random_parameters(question, &mut rng);
+            let options = at(question, &parameters);
             let values = |formula: &str| question.evaluate(formula, &options).unwrap();
-            let judge = |value: f64| judge_answer_at(&name, &format!("{value:.12}"), &options, None).unwrap();
+            let mut ask = |value: f64, words: &str, alone: bool| {
+                answers.push((name.clone(), format!("{value:.12}"), parameters.clone()));
+                expected.push((words.to_owned(), alone));
+            };
             let truths = values(number.formula);
-            for truth in &truths {
-                assert_eq!(judge(*truth), Judgement::Right, "{name} at {truth}");
-            }
+            truths.iter().for_each(|truth| ask(*truth, "right to the digits given", true));
             let all: Vec<_> = number.slips.iter().map(|slip| (slip, values(slip.answer))).collect();
             for (slip, wrong) in &all {
+                let wrong = wrong.iter().filter(|value| !truths.iter().any(|truth| close(*truth, **value)));
                 for value in wrong {
-                    if truths.iter().any(|truth| close(*truth, *value)) {
-                        continue;
-                    }
-                    let named = ids(&judge(*value));
                     let others = all.iter().filter(|(other, _)| other.id != slip.id);
-                    let mut others = others.flat_map(|(_, values)| values);
-                    let alone = !others.any(|other| close(*other, *value));
-                    assert!(
-                        if alone { named == [slip.id] } else { named.contains(&slip.id) },
-                        "{name}: {slip:?}"
-                    );
+                    let alone = !others.flat_map(|(_, values)| values).any(|other| close(*other, *value));
+                    ask(*value, if alone { slip.id } else { slip.words }, alone);
                 }
             }
         }
+    }
+    for ((words, alone), row) in expected.iter().zip(judged(&answers, &[])) {
+        let reason = row["reason"].as_str().unwrap();
+        let found =
+            if *alone { row["mistake"] == **words || reason == words } else { reason.contains(words) };
+        let single = !*alone || !reason.contains("; or ");
+        assert!(found && single, "{words}: {row}");
     }
 }
 
@@ -128,7 +145,7 @@ fn truths_are_those_of_independent_closed_forms() {
         [("1.2", 1.386294), ("2.1", 16.0), ("5.1(ii)", 0.128), ("5.1(iii)", 4.0), ("5.2", 0.25)]
     {
         let (question, number) = number(name);
-        let found = question.evaluate(number.formula, &at(question, &[])).unwrap();
+        let found = question.evaluate(number.formula, &Options::default()).unwrap();
         assert!((found[0] - truth).abs() < 1e-6, "{name}: {found:?}");
     }
 }
@@ -232,12 +249,9 @@ fn parameters_are_the_questions_own() {
         ("5.1(iii)", "1", &[("p-rr", 0.5)], true),
         ("5.1(iii)", "4", &[("p-rr", 0.5)], false),
     ] {
-        let judgement = judged(name, text, parameters, None).unwrap();
-        assert_eq!(judgement == Judgement::Right, right, "{name}: {text} at {parameters:?}: {judgement}");
+        let row = &judged(&[(name.into(), text.into(), parameters.into())], &[])[0];
+        assert_eq!(row["verdict"] == "right", right, "{name}: {text} at {parameters:?}: {row}");
     }
-    // what is right at these parameters is no slip there: p = ½ hides an exchange
-    assert_eq!(judged("5.1(iii)", "1", &[("p-rr", 0.5)], None).unwrap(), Judgement::Right);
-    assert_eq!(ids(&judged("1.2", "-λ ln(1-u)", &[], None).unwrap()), ["times-rate"]);
     for (name, parameters, part) in [
         ("1.2", ("rate", -1.0), "the rate λ must be positive and finite, not -1"),
         ("1.2", ("u", 2.0), "must be"),
@@ -247,8 +261,9 @@ fn parameters_are_the_questions_own() {
         ("5.1(iii)", ("p-rr", 1.0), "the answer to 5.1(iii) is infinite"),
         ("5.2", ("p-rr", 0.0), "must be"),
     ] {
-        let error = judged(name, "1", &[parameters], None).unwrap_err().to_string();
-        assert!(error.contains(part), "{name} at {parameters:?}: {error}");
+        let row = &judged(&[(name.into(), "1".into(), vec![parameters])], &[])[0];
+        let said = row["verdict"] == "not judged" && row["reason"].as_str().unwrap().contains(part);
+        assert!(said, "{name} at {parameters:?}: {row}");
     }
     let mut options = Options::default();
     let error = options.set(question("3.2").unwrap(), "rate", "1").unwrap_err();
@@ -257,26 +272,27 @@ fn parameters_are_the_questions_own() {
 
 #[test]
 fn digits_can_be_asked_for() {
-    let few = |needed| Judgement::TooFewDigits { needed };
-    for (name, text, digits, judgement) in [
-        ("1.2", "1.3", None, Judgement::Right),
-        ("1.2", "1.3", Some(3), few(3)),
-        ("1.2", "1.38", Some(3), few(3)),
-        ("1.2", "1.39", Some(3), Judgement::Right),
-        ("1.2", "1.386", Some(3), Judgement::Right),
-        ("1.2", "1.39", Some(4), few(4)),
-        ("1.2", "ln 4", Some(9), Judgement::Right),
-        ("1.2", "1.4", Some(0), Judgement::Right),
-        ("1.2", "1.3863", Some(u32::MAX), few(u32::MAX)),
-        ("5.1(i)", "0.2", Some(3), Judgement::Right), // exactly
-        ("5.1(ii)", "0.13", Some(3), few(3)),
-        ("5.1(ii)", "0.1", None, few(2)), // another answer is as near
-        ("5.1(ii)", "12.8 %", Some(3), Judgement::Right),
-        ("3.1", "0.0", Some(3), Judgement::Right),
+    for (name, text, digits, verdict) in [
+        ("1.2", "1.3", None, "right"),
+        ("1.2", "1.3", Some("3"), "undecided"),
+        ("1.2", "1.38", Some("3"), "undecided"),
+        ("1.2", "1.39", Some("3"), "right"),
+        ("1.2", "1.386", Some("3"), "right"),
+        ("1.2", "1.39", Some("4"), "undecided"),
+        ("1.2", "ln 4", Some("9"), "right"),
+        ("1.2", "1.4", Some("1"), "right"),
+        ("1.2", "1.3863", Some("1000000"), "undecided"),
+        ("5.1(i)", "0.2", Some("3"), "right"), // exactly
+        ("5.1(ii)", "0.13", Some("3"), "undecided"),
+        ("5.1(ii)", "0.1", None, "undecided"), // another answer is as near
+        ("5.1(ii)", "12.8 %", Some("3"), "right"),
+        ("3.1", "0.0", Some("3"), "right"),
     ] {
-        assert_eq!(judged(name, text, &[], digits).unwrap(), judgement, "{name}: {text}, {digits:?}");
+        let digits: Vec<&str> = digits.into_iter().flat_map(|digits| ["--digits", digits]).collect();
+        let row = &judged(&[(name.into(), text.into(), Vec::new())], &digits)[0];
+        assert_eq!(row["verdict"], verdict, "{name}: {text}, {digits:?}: {row}");
     }
-    assert_eq!(few(2).to_string(), "too few digits: give 2, rounded");
+    assert_eq!(Judgement::TooFewDigits { needed: 2 }.to_string(), "too few digits: give 2, rounded");
 }
 
 #[test]
@@ -366,16 +382,12 @@ proptest! {
     fn no_answer_panics(
         text in ".{0,30}",
         near in "[-+*/^(). 0-9eπρuλlnLog√²⁻%=,½]{0,30}",
-        digits in any::<u32>(),
     ) {
         for (question, number) in numbers() {
             let name = format!("{}{}", question.id, number.part);
             for answer in [&text, &near] {
-                let judgement = judge_answer_at(&name, answer, &Options::default(), Some(digits));
-                let words = match judgement {
-                    Ok(judgement) => judgement.to_string(),
-                    Err(error) => error.to_string(),
-                };
+                let words =
+                    judge_answer(&name, answer).map_or_else(|error| error.to_string(), |of| of.to_string());
                 prop_assert!(!words.contains("NaN") || answer.contains("NaN"), "{}: {}", answer, words);
                 prop_assert!(!words.contains('\n'));
             }

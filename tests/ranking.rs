@@ -368,27 +368,3 @@ fn work_has_one_unit() {
     let one = comparison([counts(3.0), counts(0.0)]);
     assert_eq!((one.unit_of_work(), one.work(&one.rivals[0])), ("random numbers", 7.0));
 }
-
-#[cfg(feature = "notebook")]
-#[test]
-fn a_notebook_shows_what_to_mind() {
-    use unbiased::notebook::Show;
-    let heavy = Measured { heavy_tail: true, ..measured(Nature::Unbiased, 2.0, 9.0, 1e-6) };
-    let shown = comparison([
-        heavy,
-        measured(Nature::InfiniteVariance, 2.0, 1.0, 1e-6),
-        measured(Nature::Biased, 2.1, 1.0, 1e-6),
-        measured(Nature::Unbiased, 2.0, 9.05, 1e-6),
-    ])
-    .show();
-    for remark in [
-        "a few draws make up most of the variance",
-        "infinite variance",
-        "overtaken by the best after",
-        "not told apart",
-        "∞",
-    ] {
-        assert!(shown.plain().contains(remark), "{remark}: {}", shown.plain());
-    }
-    assert!(shown.html().contains("overtaken by the best"));
-}

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use unbiased::workbook::{Options, exercises, questions};
+use unbiased::workbook::{Options, exercise, questions};
 
 const README: &str = include_str!("../README.md");
 
@@ -59,7 +59,8 @@ fn the_table_is_that_of_the_questions_and_has_every_figure() {
 
 #[test]
 fn the_mistakes_are_counted() {
-    let mistakes: usize = exercises().iter().map(|exercise| exercise.mistakes.len()).sum();
+    let exercises = ["1.1", "2.1", "3.5", "4.3", "5", "5.1"].map(|of| exercise(of).unwrap());
+    let mistakes: usize = exercises.iter().map(|exercise| exercise.mistakes.len()).sum();
     let words: Vec<&str> = README.split_whitespace().collect();
     assert!(words.join(" ").contains(&format!("which of {mistakes} classic mistakes")), "{mistakes}");
     assert!(words.contains(&"sixteen") && questions().count() == 16);

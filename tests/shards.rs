@@ -3,9 +3,8 @@
 mod common;
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
+use common::programs::{Ran, folder, lasting, run_in};
 use proptest::prelude::*;
 use unbiased::inversion::Exponential;
 use unbiased::lambertian::hemisphere::Hemisphere;
@@ -78,83 +77,60 @@ fn shards_that_make_no_run_are_refused() {
 }
 
 // ---- the examples' options
-// -----------------------------------------------------------------------------------------
-
-fn example(name: &str, arguments: &[&str], folder: &Path) -> Output {
-    let test = std::env::current_exe().unwrap();
-    let path = test.parent().unwrap().parent().unwrap().join("examples").join(name);
-    Command::new(path).args(arguments).current_dir(folder).output().unwrap()
-}
-
-/// A row without what differs from run to run.
-fn rows(output: &Output) -> Vec<serde_json::Value> {
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let rows = String::from_utf8_lossy(&output.stdout).lines().map(|line| line.parse().unwrap()).collect();
-    let bare = |mut row: serde_json::Value| {
-        for name in ["seconds", "figures"] {
-            row.as_object_mut().unwrap().remove(name);
-        }
-        row
-    };
-    let rows: Vec<serde_json::Value> = rows;
-    rows.into_iter().map(bare).collect()
-}
-
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
-    folder
-}
 
 #[test]
 fn the_rows_of_shards_are_those_of_the_whole() {
-    let folder = folder("shards");
+    let folder = folder();
+    let example = |name: &str, arguments: &[&str]| run_in(&folder, name, arguments, "");
+    let rows = |ran: Ran| ran.well().rows().into_iter().map(lasting).collect::<Vec<_>>();
+    let refused = |name: &str, arguments: &[&str], sentence: &str| {
+        let Ran { code, err, .. } = example(name, arguments);
+        assert!(err.contains(sentence) && err.trim().lines().count() == 1, "{arguments:?}: {err}");
+        assert_eq!(code, Some(2), "{arguments:?}");
+    };
     for (name, own) in
         [("q1_1_exponential", &["--rate", "0.37"][..]), ("q3_6_variance", &[]), ("q5_1_bounces", &[])]
     {
         let common = [own, &["--draws", "5000", "--seed", "7"]].concat();
-        let mut files = Vec::new();
-        for k in 1..=3 {
+        let files = [1, 2, 3].map(|k| format!("{name}_{k}.json"));
+        for (k, file) in (1..).zip(&files) {
             let shard = format!("{k}/3");
-            let output = example(name, &[&common[..], &["--json", "--shard", &shard]].concat(), &folder);
-            assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
-            let file = format!("{name}_{k}.json");
-            fs::write(folder.join(&file), output.stdout).unwrap();
-            files.push(file);
+            let printed = example(name, &[&common[..], &["--json", "--shard", &shard]].concat()).well().out;
+            fs::write(folder.join(file), printed).unwrap();
         }
         assert!(!folder.join("worksheet").exists(), "a shard draws nothing");
-        let files: Vec<&str> = files.iter().map(String::as_str).collect();
-        let merged = example(name, &[own, &["--json", "--merge"], &files].concat(), &folder);
-        let whole = example(name, &[&common[..], &["--json"]].concat(), &folder);
-        assert!(rows(&merged) == rows(&whole) && rows(&whole).len() > 1, "{name}");
-        let text = example(name, &[own, &["--verbose", "--merge"], &files].concat(), &folder);
-        assert!(String::from_utf8_lossy(&text.stdout).contains("5000 draws"), "{name}");
+        let files = files.each_ref().map(String::as_str);
+        let merged = rows(example(name, &[own, &["--json", "--merge"], &files].concat()));
+        let whole = rows(example(name, &[&common[..], &["--json"]].concat()));
+        assert!(merged == whole && whole.len() > 1, "{name}");
+        let text = example(name, &[own, &["--verbose", "--merge"], &files].concat()).well().out;
+        assert!(text.contains("5000 draws"), "{name}");
         fs::remove_dir_all(folder.join("worksheet")).unwrap();
-        let said = |arguments: &[&str], sentence: &str| {
-            let output = example(name, arguments, &folder);
-            let error = String::from_utf8_lossy(&output.stderr);
-            assert!(error.contains(sentence) && error.trim().lines().count() == 1, "{arguments:?}: {error}");
-            assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-        };
-        said(&[own, &["--merge", files[0], files[1]]].concat(), "is missing");
-        said(&[own, &["--merge", files[0], files[0], files[1], files[2]]].concat(), "is there twice");
-        said(&["--shard", "0/3", "--json"], "--shard takes one of 1/N to N/N");
-        said(&["--shard", "4/3", "--json"], "--shard takes one of 1/N to N/N");
-        said(&["--shard", "1/3"], "--shard needs --json");
-        said(&["--shard", "1/3", "--json", "--seconds", "1"], "--shard excludes --error and --seconds");
-        said(&["--merge", "nowhere.json"], "nowhere.json");
+        refused(name, &[own, &["--merge", files[0], files[1]]].concat(), "is missing");
+        refused(
+            name,
+            &[own, &["--merge", files[0], files[0], files[1], files[2]]].concat(),
+            "is there twice",
+        );
     }
-    let files: Vec<String> = (1..=3).map(|k| format!("q1_1_exponential_{k}.json")).collect();
-    let files: Vec<&str> = files.iter().map(String::as_str).collect();
+    let files = [1, 2, 3].map(|k| format!("q1_1_exponential_{k}.json"));
+    let files = files.each_ref().map(String::as_str);
+    let other_rate = [&["--rate", "2", "--merge"], &files[..]].concat();
+    let other_example = [&["--merge"], &files[..]].concat();
     for (name, arguments, sentence) in [
-        ("q1_1_exponential", &["--rate", "2"][..], "another example or other options"),
-        ("q3_6_variance", &[], "another example or other options"),
+        ("q1_1_exponential", &["--shard", "0/3", "--json"][..], "--shard takes one of 1/N to N/N"),
+        ("q1_1_exponential", &["--shard", "4/3", "--json"], "--shard takes one of 1/N to N/N"),
+        ("q1_1_exponential", &["--shard", "1/3"], "--shard needs --json"),
+        (
+            "q1_1_exponential",
+            &["--shard", "1/3", "--json", "--seconds", "1"],
+            "--shard excludes --error and --seconds",
+        ),
+        ("q1_1_exponential", &["--merge", "nowhere.json"], "nowhere.json"),
+        ("q1_1_exponential", &other_rate, "another example or other options"),
+        ("q3_6_variance", &other_example, "another example or other options"),
+        ("q1_1_exponential", &["--merge", files[0], "q5_1_bounces_2.json"], "than the others"),
     ] {
-        let output = example(name, &[arguments, &["--merge"], &files].concat(), &folder);
-        assert!(String::from_utf8_lossy(&output.stderr).contains(sentence), "{output:?}");
+        refused(name, arguments, sentence);
     }
-    let mixed = ["q1_1_exponential_1.json", "q5_1_bounces_2.json"];
-    let output = example("q1_1_exponential", &[&["--merge"], &mixed[..]].concat(), &folder);
-    assert!(String::from_utf8_lossy(&output.stderr).contains("than the others"), "{output:?}");
 }

@@ -72,5 +72,5 @@ fn main() -> ExitCode {
             }
         }
     }
-    worksheet.beside("extremes", extremes::answer).beside("trade", trade::answer).run()
+    worksheet.beside(&extremes::APPENDIX).beside(&trade::APPENDIX).run()
 }

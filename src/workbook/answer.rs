@@ -1,29 +1,19 @@
 //! One number of an answer.
 
-use std::borrow::Cow;
-
-use serde::Serialize;
+use std::time::Duration;
 
 use super::Value;
 use crate::doubt::Doubt;
 use crate::estimate::Estimate;
 use crate::plot::{Edition, Figure};
-use crate::run::{Cost, Outcome, Part, Shortfall};
+use crate::run::{Cost, Outcome};
 use crate::trade::Measured;
 
-/// What a row of an answer is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Kind {
-    /// Right, and checked against its truth.
-    Answer,
-    /// Wrong on purpose, or of infinite variance: shown, but not checked.
-    Demonstration,
-}
-
-/// Why a row is not judged.
+/// Why a row is shown, but not judged.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Words {
+pub(super) enum Unjudged {
+    /// Wrong, or of infinite variance.
+    Demonstration,
     /// A classic mistake, in a few words.
     WrongOnPurpose(String),
     /// The error bar cannot be trusted.
@@ -33,23 +23,21 @@ pub(super) enum Words {
 }
 
 /// One number that answers (part of) a question, or a sentence where it has none.
+///
+/// A [`Sheet`](super::Sheet) fills its own; an [`Appendix`](super::Appendix) gives some to programs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    question: String,
-    what: String,
-    kind: Kind,
-    words: Option<Words>,
-    parameters: Vec<(Cow<'static, str>, Value)>,
-    truth: Option<f64>,
-    value: Option<f64>,
-    estimate: Option<Estimate>,
-    cost: Cost,
-    seed: Option<u64>,
-    seconds: Option<f64>,
-    shortfall: Option<Shortfall>,
-    part: Option<Part>,
-    note: Option<String>,
-    figures: Vec<Figure>,
+    /// The sheet's number, with the part of the question: "5.1(ii)".
+    pub(super) question: String,
+    pub(super) what: String,
+    pub(super) unjudged: Option<Unjudged>,
+    pub(super) parameters: Vec<(String, Value)>,
+    pub(super) truth: Option<f64>,
+    /// Computed numerically, without an error bar.
+    pub(super) value: Option<f64>,
+    pub(super) outcome: Option<Outcome>,
+    pub(super) note: Option<String>,
+    pub(super) figures: Vec<Figure>,
 }
 
 /// With fewer draws a mean may be far from normal, and z is meaningless.
@@ -65,17 +53,11 @@ impl Answer {
         Self {
             question: question.into(),
             what: what.into(),
-            kind: Kind::Answer,
-            words: None,
+            unjudged: None,
             parameters: Vec::new(),
             truth: None,
             value: None,
-            estimate: None,
-            cost: Cost::default(),
-            seed: None,
-            seconds: None,
-            shortfall: None,
-            part: None,
+            outcome: None,
             note: None,
             figures: Vec::new(),
         }
@@ -83,30 +65,21 @@ impl Answer {
 
     /// Marks it as wrong on purpose, or of infinite variance.
     pub fn demonstration(mut self) -> Self {
-        self.kind = Kind::Demonstration;
-        self
-    }
-
-    /// The same, with the reason.
-    pub(super) fn not_judged(mut self, words: Words) -> Self {
-        self.words = Some(words);
-        self.demonstration()
-    }
-
-    /// The part of its question that it answers: "(ii)".
-    pub(super) fn part_of_question(mut self, part: &str) -> Self {
-        self.question += part;
+        self.unjudged = Some(Unjudged::Demonstration);
         self
     }
 
     /// A parameter that it was computed with; if the same name is given again, the last value counts.
-    pub fn parameter(mut self, name: impl Into<Cow<'static, str>>, value: impl Into<Value>) -> Self {
-        let (name, value) = (name.into(), value.into());
-        match self.parameters.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, known)) => *known = value,
-            None => self.parameters.push((name, value)),
-        }
+    pub fn parameter(mut self, name: &str, value: impl Into<Value>) -> Self {
+        self.set_parameter(name, value.into());
         self
+    }
+
+    pub(super) fn set_parameter(&mut self, name: &str, value: Value) {
+        match self.parameters.iter_mut().find(|(known, _)| known == name) {
+            Some((_, known)) => *known = value,
+            None => self.parameters.push((name.into(), value)),
+        }
     }
 
     /// The exact value.
@@ -121,26 +94,19 @@ impl Answer {
         self
     }
 
-    /// The outcome of a run.
-    pub fn outcome(mut self, outcome: &Outcome) -> Self {
-        self.estimate = Some(outcome.estimate);
-        self.cost = outcome.cost;
-        self.seed = Some(outcome.seed);
-        self.seconds = Some(outcome.elapsed.as_secs_f64());
-        self.shortfall = outcome.shortfall;
-        self.part = outcome.part.clone();
-        self
-    }
-
     /// The result of a comparison for one estimator, with what its rank is based on as parameters.
     pub fn measured(mut self, rival: &Measured, seed: u64) -> Self {
         let draws = rival.estimate.draws() as f64;
         let count = |each: f64| (each * draws).round() as u64;
-        self.estimate = Some(rival.estimate);
-        self.cost =
-            Cost { random_numbers: count(rival.random_numbers), evaluations: count(rival.evaluations) };
-        self.seed = Some(seed);
-        self.seconds = Some(rival.seconds * draws);
+        self.outcome = Some(Outcome {
+            estimate: rival.estimate,
+            seed,
+            cost: Cost { random_numbers: count(rival.random_numbers), evaluations: count(rival.evaluations) },
+            elapsed: Duration::try_from_secs_f64(rival.seconds * draws).unwrap_or_default(),
+            pilot: None,
+            shortfall: None,
+            part: None,
+        });
         self.truth(rival.truth)
             .parameter("variance", rival.variance())
             .parameter("variance_error", rival.variance_error)
@@ -148,57 +114,44 @@ impl Answer {
             .parameter("efficiency", rival.efficiency())
     }
 
-    /// A sentence: the answer itself if the question has no number, or a remark on the number. A second one
-    /// is appended.
-    pub fn note(mut self, note: impl Into<String>) -> Self {
-        let note = note.into();
-        self.note = Some(self.note.map_or(note.clone(), |before| format!("{before} {note}")));
-        self
+    /// Adds a sentence: the answer itself if the question has no number, or a remark on the number.
+    pub(super) fn add_note(&mut self, note: &str) {
+        self.note = Some(self.note.as_ref().map_or(note.into(), |before| format!("{before} {note}")));
     }
 
-    /// A figure for it.
-    pub fn figure(mut self, figure: Figure) -> Self {
-        self.figures.push(figure);
-        self
+    pub(super) fn estimate(&self) -> Option<&Estimate> {
+        self.outcome.as_ref().map(|outcome| &outcome.estimate)
     }
 
-    /// The sheet's number.
-    pub fn question(&self) -> &str {
-        &self.question
+    /// The value computed numerically, or the estimated mean.
+    pub(super) fn found(&self) -> Option<f64> {
+        self.value.or(self.estimate().map(Estimate::mean))
     }
 
-    /// What it is about.
-    pub fn what(&self) -> &str {
-        &self.what
+    /// Whether there is a number to show.
+    pub(super) fn is_a_number(&self) -> bool {
+        self.found().is_some() || self.truth.is_some()
     }
 
-    /// Whether it is meant to be right.
-    pub fn kind(&self) -> Kind {
-        self.kind
-    }
-
-    /// The exact value, if there is one.
-    pub fn exact(&self) -> Option<f64> {
-        self.truth
-    }
-
-    /// The estimate, if it was estimated.
-    pub fn estimate(&self) -> Option<&Estimate> {
-        self.estimate.as_ref()
+    pub(super) fn seconds(&self) -> Option<f64> {
+        self.outcome.as_ref().map(|outcome| outcome.elapsed.as_secs_f64())
     }
 
     /// The difference of estimate and truth in standard errors, if both are known.
-    pub fn z(&self) -> Option<f64> {
-        self.estimate?.z(self.truth?)
+    pub(super) fn z(&self) -> Option<f64> {
+        self.estimate()?.z(self.truth?)
     }
 
-    /// Whether the estimate agrees with the truth, |z| ≤ 4. `None` if one of them is missing, the row is a
-    /// demonstration, or its error bar is in doubt.
-    pub fn agrees(&self) -> Option<bool> {
-        if self.kind == Kind::Demonstration || self.doubt().is_some() {
+    /// Whether it is right: whether a numerical value has nine digits of the truth, or an estimate |z| ≤ 4.
+    /// `None` if something is missing, the row is not judged, or its error bar is in doubt.
+    pub(super) fn right(&self) -> Option<bool> {
+        if self.unjudged.is_some() || self.doubt().is_some() {
             return None;
         }
-        Some(self.z()?.abs() <= 4.0)
+        match (self.value, self.truth) {
+            (Some(value), Some(truth)) => Some((value - truth).abs() <= 1e-9 * truth.abs()),
+            _ => Some(self.z()?.abs() <= 4.0),
+        }
     }
 
     /// Why its error bar cannot be trusted, if so: for a given reason, or because there are too few draws, or
@@ -209,10 +162,12 @@ impl Answer {
     /// 3e-4. If all draws are below a hundredth of the truth, or are 0 and no truth is known, no number of
     /// draws is enough: the whole mean may come from rarer values, as with a light too small to hit.
     pub(super) fn doubt(&self) -> Option<Doubt> {
-        if let Some(Words::Doubted(doubt)) = &self.words {
-            return Some(doubt.clone());
+        match &self.unjudged {
+            Some(Unjudged::Doubted(doubt)) => return Some(doubt.clone()),
+            Some(_) => return None,
+            None => {}
         }
-        let (estimate, Kind::Answer) = (self.estimate?, self.kind) else { return None };
+        let estimate = self.estimate()?;
         let Some(truth) = self.truth else {
             let dark = estimate.mean() == 0.0 && estimate.std_error() == Some(0.0);
             return dark.then_some(Doubt::NeverVaried);
@@ -225,35 +180,17 @@ impl Answer {
         }
     }
 
-    /// Whether it is right: see [`agrees`](Self::agrees); to nine digits if it was computed numerically.
-    pub(super) fn right(&self) -> Option<bool> {
-        match (self.value, self.truth, self.kind) {
-            (Some(value), Some(truth), Kind::Answer) => Some((value - truth).abs() <= 1e-9 * truth.abs()),
-            _ => self.agrees(),
-        }
-    }
-
     /// ✓ or ✗, or words that say why it is neither.
     pub(super) fn verdict(&self) -> &'static str {
-        if let Some(doubt) = self.doubt() {
-            return doubt.mark();
-        }
-        match (&self.words, self.right()) {
-            (Some(Words::WrongOnPurpose(_)), _) => "wrong on purpose",
-            (Some(Words::LeftOut), _) => "left out",
-            (None, Some(true)) => "✓",
-            (None, Some(false)) => "✗",
-            (None, None) if self.kind == Kind::Demonstration => "not judged",
-            (None, None) if self.found().is_some() && self.truth.is_none() => "no closed form",
+        match (&self.unjudged, self.doubt(), self.right()) {
+            (_, Some(doubt), _) => doubt.mark(),
+            (Some(Unjudged::WrongOnPurpose(_)), ..) => "wrong on purpose",
+            (Some(Unjudged::LeftOut), ..) => "left out",
+            (Some(_), ..) => "not judged",
+            (None, _, Some(true)) => "✓",
+            (None, _, Some(false)) => "✗",
+            _ if self.found().is_some() && self.truth.is_none() => "no closed form",
             _ => "",
-        }
-    }
-
-    /// The mistake that it makes on purpose.
-    pub(super) fn on_purpose(&self) -> Option<&str> {
-        match &self.words {
-            Some(Words::WrongOnPurpose(why)) => Some(why),
-            _ => None,
         }
     }
 
@@ -265,50 +202,15 @@ impl Answer {
         }
     }
 
-    pub(super) fn parameters(&self) -> &[(Cow<'static, str>, Value)] {
-        &self.parameters
-    }
-
-    /// The value computed numerically, or the estimated mean.
-    pub(super) fn found(&self) -> Option<f64> {
-        self.value.or(self.estimate.map(|estimate| estimate.mean()))
-    }
-
-    pub(super) fn cost(&self) -> Cost {
-        self.cost
-    }
-
-    pub(super) fn seed(&self) -> Option<u64> {
-        self.seed
-    }
-
-    pub(super) fn seconds(&self) -> Option<f64> {
-        self.seconds
-    }
-
-    /// How far it is from the error asked for, if it was cut short.
-    pub(super) fn shortfall(&self) -> Option<Shortfall> {
-        self.shortfall
-    }
-
-    /// The data from which the whole run can be merged, if it is a shard.
-    pub(super) fn part(&self) -> Option<&Part> {
-        self.part.as_ref()
-    }
-
-    pub(super) fn sentence(&self) -> Option<&str> {
-        self.note.as_deref()
+    /// Whether it may be shown in this edition: a demonstration names a mistake.
+    pub(super) fn shown_in(&self, edition: Edition) -> bool {
+        edition == Edition::Solution || self.unjudged.is_none()
     }
 
     /// The figures that belong to this edition.
     pub(super) fn figures(&self, edition: Edition) -> impl Iterator<Item = &Figure> {
         self.figures.iter().filter(move |figure| figure.edition() == edition)
     }
-}
-
-/// A row's parameters as JSON.
-pub(super) fn parameters_of(answer: &Answer) -> serde_json::Map<String, serde_json::Value> {
-    answer.parameters.iter().map(|(name, value)| (name.to_string(), value.json())).collect()
 }
 
 #[cfg(test)]
@@ -318,7 +220,7 @@ mod tests {
 
     fn row(estimator: &dyn Estimator, draws: u64, truth: f64) -> Answer {
         let outcome = Run::new(1).threads(1).estimate(estimator, Budget::Draws(draws)).unwrap();
-        Answer::new("1.1", "").truth(truth).outcome(&outcome)
+        Answer { outcome: Some(outcome), ..Answer::new("1.1", "").truth(truth) }
     }
 
     /// U's mean is 1/2. With 1000 draws 0.4 is eleven standard errors off; with fewer it is not judged.
@@ -328,19 +230,19 @@ mod tests {
         for (draws, right, wrong) in
             [(1, None, None), (2, None, None), (999, None, None), (1000, Some(true), Some(false))]
         {
-            assert_eq!(row(&uniform, draws, 0.5).agrees(), right, "{draws}");
-            assert_eq!(row(&uniform, draws, 0.4).agrees(), wrong, "{draws}");
+            assert_eq!(row(&uniform, draws, 0.5).right(), right, "{draws}");
+            assert_eq!(row(&uniform, draws, 0.4).right(), wrong, "{draws}");
             let few = wrong.is_none().then_some(Doubt::TooFewDraws);
             assert_eq!(row(&uniform, draws, 0.4).doubt(), few);
         }
-        assert_eq!(row(&uniform, 1000, 0.4).demonstration().agrees(), None);
+        assert_eq!(row(&uniform, 1000, 0.4).demonstration().right(), None);
         assert_eq!(row(&uniform, 2, 0.4).demonstration().doubt(), None);
     }
 
     #[test]
     fn draws_that_are_all_alike_are_judged_later_if_they_are_off() {
         let one = from_fn(|_| 1.0);
-        for (draws, truth, agrees) in [
+        for (draws, truth, right) in [
             (1000, 1.0, Some(true)),
             (99_999, 1.1, None),
             (100_000, 1.1, Some(false)),
@@ -348,7 +250,7 @@ mod tests {
             (100_000, 99.0, Some(false)),
             (100_000, 101.0, None),
         ] {
-            assert_eq!(row(&one, draws, truth).agrees(), agrees, "{draws} {truth}");
+            assert_eq!(row(&one, draws, truth).right(), right, "{draws} {truth}");
         }
     }
 }

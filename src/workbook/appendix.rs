@@ -1,49 +1,31 @@
 //! Appendices: text, tables and figures that answer no question of the sheet. Each has a page and an example
 //! of its own.
 
-use super::Answer;
+use super::{Answer, Options};
 use crate::error::{Error, Result};
 use crate::plot::Figure;
 
-/// The command line of an appendix's example: what its `--help` and its error messages need.
-pub(super) struct Beside {
+/// A part of the worksheet that answers none of the sheet's questions, with all that is fixed before it is
+/// made. The student's edition leaves it out.
+#[derive(Debug, Clone, Copy)]
+pub struct Appendix {
     /// The file in `examples/`, without `.rs`.
     pub example: &'static str,
-    /// A paragraph that describes it.
+    /// The title, a few words.
+    pub title: &'static str,
+    /// The paragraph that describes it in `--help`.
     pub about: &'static str,
     /// What `--seconds` means to it, if it takes that option.
     pub seconds: Option<&'static str>,
-    /// Why it does not take the other options.
+    /// Why it does not take the other options of the questions' examples.
     pub why: &'static str,
+    /// Makes it.
+    pub make: fn(&Options) -> Result<Contents>,
 }
 
-const ALL: [Beside; 2] = [
-    Beside {
-        example: "extremes",
-        about: "Where the obvious code breaks: textbook formulas, inputs at which they fail in floating \
-                point, and what the crate gives there.",
-        seconds: None,
-        why: "it evaluates each formula once, and has no student edition and no hint",
-    },
-    Beside {
-        example: "trade",
-        about: "What does a second buy? The workbook's rival estimators, compared by variance and time on \
-                one core of this machine.",
-        seconds: Some("seconds for each estimator (0.03)"),
-        why: "it compares estimators on one core, for --seconds S each, and has no student edition and no \
-              hint",
-    },
-];
-
-/// The appendix's example of this name.
-pub(super) fn beside(example: &str) -> Result<&'static Beside> {
-    let known = ALL.iter().find(|beside| beside.example == example);
-    known.ok_or_else(|| Error::Usage(format!("there is no appendix example {example}")))
-}
-
-impl Beside {
+impl Appendix {
     /// Refuses an option of the questions' examples that makes no sense for it.
-    pub fn take(&self, option: &str) -> Result<()> {
+    pub(super) fn take(&self, option: &str) -> Result<()> {
         let refused = match option {
             "draws" | "error" | "threads" | "edition" | "hint" => true,
             "seconds" => self.seconds.is_none(),
@@ -54,13 +36,9 @@ impl Beside {
     }
 }
 
-/// A part of the worksheet that answers none of the sheet's questions. The student's edition leaves it out.
+/// What an appendix holds.
 #[derive(Debug, Clone)]
-pub struct Appendix {
-    /// The file in `examples/`, without `.rs`.
-    pub example: &'static str,
-    /// The title, a few words.
-    pub title: &'static str,
+pub struct Contents {
     /// An introduction, one paragraph.
     pub text: String,
     /// Its tables, in order.
@@ -103,6 +81,17 @@ impl Table {
             serde_json::Value::Object(cells.collect()).to_string()
         };
         self.rows.iter().map(object).collect::<Vec<_>>().join("\n")
+    }
+
+    /// As CSV, the columns' names first.
+    pub(crate) fn csv(&self) -> Result<String> {
+        let failed = |reason: String| Error::Write { path: "a table as CSV".into(), reason };
+        let mut csv = csv::Writer::from_writer(Vec::new());
+        for row in std::iter::once(&self.columns).chain(&self.rows) {
+            csv.write_record(row).map_err(|error| failed(error.to_string()))?;
+        }
+        let bytes = csv.into_inner().map_err(|error| failed(error.to_string()))?;
+        String::from_utf8(bytes).map_err(|error| failed(error.to_string()))
     }
 
     /// Each column's width in characters.

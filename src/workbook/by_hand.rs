@@ -89,36 +89,13 @@ pub enum Judgement {
 /// # Errors
 /// If the question asks for no number, or for several and the part is missing, or the text is not understood.
 pub fn judge_answer(question: &str, text: &str) -> Result<Judgement> {
-    judge_answer_at(question, text, &Options::default(), None)
+    judged(question, text, &Options::default(), None).map(|(judgement, _)| judgement)
 }
 
-/// The same at the parameters in `options`. With `digits`, at least that many significant digits are
-/// required, unless the answer is exact.
+/// The same at the parameters in `options`, with the ratio to the right answer, if there is one. With
+/// `digits`, at least that many significant digits are required, unless the answer is exact.
 ///
-/// ```
-/// use unbiased::workbook::{Judgement, Options, judge_answer_at, question};
-///
-/// let mut options = Options::default();
-/// options.set(question("3.2")?, "albedo", "0.5")?;
-/// assert_eq!(judge_answer_at("3.2", "0.5", &options, None)?, Judgement::Right);
-///
-/// let sheet = Options::default();
-/// assert_eq!(judge_answer_at("1.2", "1.3", &sheet, Some(3))?, Judgement::TooFewDigits { needed: 3 });
-/// # Ok::<(), unbiased::Error>(())
-/// ```
-///
-/// # Errors
-/// Those of [`judge_answer`], and if a parameter is outside its domain or the right answer is infinite.
-pub fn judge_answer_at(
-    question: &str,
-    text: &str,
-    options: &Options,
-    digits: Option<u32>,
-) -> Result<Judgement> {
-    judged(question, text, options, digits).map(|(judgement, _)| judgement)
-}
-
-/// The same with the ratio to the right answer, if there is one.
+/// It is an error, too, if a parameter is outside its domain or the right answer is infinite.
 pub(super) fn judged(
     question: &str,
     text: &str,
@@ -139,13 +116,10 @@ pub(super) fn judged(
     // an answer with letters has a ratio only if that is the same for all values of the letters
     let (elsewhere, others) = answer.with_letters(0.9)?;
     let there = question.with_letters(number.formula, &others)?;
-    let over =
-        |given: &Known, truths: &[f64]| truths.iter().map(|truth| given.value / truth).collect::<Vec<_>>();
     // if there are several right answers, the nearest one
-    let ratios = over(&given, &truths).into_iter().zip(over(&elsewhere, &there));
-    let [here, there] = ratios
-        .min_by(|a, b| (a.0 - 1.0).abs().total_cmp(&(b.0 - 1.0).abs()))
-        .map_or([f64::INFINITY; 2], <[f64; 2]>::from);
+    let ratios = truths.iter().zip(&there).map(|(here, there)| [given.value / here, elsewhere.value / there]);
+    let off = |ratio: f64| (ratio - 1.0).abs();
+    let [here, there] = ratios.min_by(|a, b| off(a[0]).total_cmp(&off(b[0]))).unwrap_or([f64::INFINITY; 2]);
     let ratio = Some(here).filter(|here| here.is_finite() && same(*here, there));
 
     let mut near = Vec::new();
@@ -273,7 +247,9 @@ impl<'a> Answered<'a> {
     /// The value of the answer and the letters' values. Letters that occur in the answer get generic numbers
     /// times `scale`, the others the parameters.
     fn with_letters(&self, scale: f64) -> Result<(Known, Vec<f64>)> {
-        let holds = |index: usize| self.tokens.contains(&Token::Letter(index));
+        let holds = |index: usize| {
+            self.tokens.iter().any(|token| matches!(token, Token::Letter(letter) if *letter == index))
+        };
         let own = self.question.letters().zip(&self.letters).enumerate();
         let letters: Vec<f64> = own
             .map(|(index, (letter, value))| if holds(index) { scale * letter.generic } else { *value })
@@ -282,8 +258,7 @@ impl<'a> Answered<'a> {
         let n = scale * 7.3;
         let given = at(n).ok_or_else(|| self.not_understood())?;
         if !given.value.is_finite() || !(given.below + given.above).is_finite() {
-            let text = excerpt(self.text);
-            return Err(Error::Usage(format!("the answer \"{text}\" is not a finite number")));
+            return Err(self.refused("is not a finite number"));
         }
         let Some(sum) = self.number.over_n.filter(|_| holds(letters.len())) else {
             return Ok((given, letters));
@@ -291,10 +266,7 @@ impl<'a> Answered<'a> {
         // c/n stands for c
         let (c, elsewhere) = (n * given.value, at(2.0 * n).map(|given| 2.0 * n * given.value));
         if !elsewhere.is_some_and(|elsewhere| same(c, elsewhere)) {
-            let text = excerpt(self.text);
-            return Err(Error::Usage(format!(
-                "the answer \"{text}\" is not a number over n: give the c of {sum}, or c/n"
-            )));
+            return Err(self.refused(&format!("is not a number over n: give the c of {sum}, or c/n")));
         }
         Ok((given.through(c, n), letters))
     }
@@ -307,24 +279,30 @@ impl<'a> Answered<'a> {
             [one] => format!(", and the question's letter {one}"),
             [all @ .., last] => format!(", and the question's letters {} and {last}", all.join(", ")),
         };
-        let text = excerpt(self.text);
-        Error::Usage(format!(
-            "the answer \"{text}\" is not understood. Allowed are numbers, fractions, + − × / ^, brackets, \
-             ln, log10, exp, √, π, e{letters}"
+        self.refused(&format!(
+            "is not understood. Allowed are numbers, fractions, + − × / ^, brackets, ln, log10, exp, √, π, \
+             e{letters}"
         ))
+    }
+
+    fn refused(&self, why: &str) -> Error {
+        const MOST: usize = 40;
+        let plain = |c: char| if c.is_control() { ' ' } else { c };
+        let mut text: String = self.text.chars().take(MOST).map(plain).collect();
+        if self.text.chars().nth(MOST).is_some() {
+            text.push('…');
+        }
+        Error::Usage(format!("the answer \"{text}\" {why}"))
     }
 }
 
 const N: &[&str] = &["n"];
 
-/// The beginning of a text, on one line, short enough for a sentence.
-fn excerpt(text: &str) -> String {
-    const MOST: usize = 40;
-    let mut excerpt: String = text.chars().take(MOST).map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if text.chars().nth(MOST).is_some() {
-        excerpt.push('…');
+impl Judgement {
+    /// The known wrong answers that it looks like.
+    pub(super) fn slips(&self) -> &[Slip] {
+        if let Self::LooksLike(slips) = self { slips } else { &[] }
     }
-    excerpt
 }
 
 /// The judgement in words.

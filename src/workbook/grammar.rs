@@ -40,56 +40,41 @@ impl Known {
 }
 
 /// A token of an answer.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub(super) enum Token {
     /// A number. Unlike a letter, it must not follow a factor without a multiplication sign.
     Number(Known),
     Constant(f64),
     /// Which of the question's letters.
     Letter(usize),
-    Function(Function),
+    /// A function, and its slope.
+    Function(fn(f64) -> f64, fn(f64) -> f64),
     /// A superscript.
     Power(i32),
     /// One of + - * / ^ ( ) %
     Sign(char),
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Function {
-    Ln,
-    Log10,
-    Log2,
-    Exp,
-    Sqrt,
-}
-
-impl Function {
-    fn of(self, x: Known) -> Known {
-        let a = x.value;
-        match self {
-            Self::Ln => x.through(a.ln(), 1.0 / a),
-            Self::Log10 => x.through(a.log10(), 1.0 / (a * LN_10)),
-            Self::Log2 => x.through(a.log2(), 1.0 / (a * LN_2)),
-            Self::Exp => x.through(a.exp(), a.exp()),
-            Self::Sqrt => x.through(a.sqrt(), 0.5 / a.sqrt()),
-        }
-    }
-}
+const LN: Token = Token::Function(f64::ln, |x| 1.0 / x);
+const LOG10: Token = Token::Function(f64::log10, |x| 1.0 / (x * LN_10));
+const LOG2: Token = Token::Function(f64::log2, |x| 1.0 / (x * LN_2));
+const EXP: Token = Token::Function(f64::exp, f64::exp);
+const SQRT: Token = Token::Function(f64::sqrt, |x| 0.5 / x.sqrt());
 
 /// Words of more than one letter may also be written in capitals.
 const WORDS: [(&str, Token); 16] = [
-    ("ln", Token::Function(Function::Ln)),
-    ("log", Token::Function(Function::Ln)),
-    ("log10", Token::Function(Function::Log10)),
-    ("log_10", Token::Function(Function::Log10)),
-    ("log₁₀", Token::Function(Function::Log10)),
-    ("lg", Token::Function(Function::Log10)),
-    ("log2", Token::Function(Function::Log2)),
-    ("log_2", Token::Function(Function::Log2)),
-    ("log₂", Token::Function(Function::Log2)),
-    ("exp", Token::Function(Function::Exp)),
-    ("sqrt", Token::Function(Function::Sqrt)),
-    ("√", Token::Function(Function::Sqrt)),
+    ("ln", LN),
+    ("log", LN),
+    ("log10", LOG10),
+    ("log_10", LOG10),
+    ("log₁₀", LOG10),
+    ("lg", LOG10),
+    ("log2", LOG2),
+    ("log_2", LOG2),
+    ("log₂", LOG2),
+    ("exp", EXP),
+    ("sqrt", SQRT),
+    ("√", SQRT),
     ("pi", Token::Constant(PI)),
     ("π", Token::Constant(PI)),
     ("e", Token::Constant(E)),
@@ -242,7 +227,7 @@ impl Expression<'_> {
             let divided = self.take('/');
             let without_a_sign = matches!(
                 self.tokens,
-                [Token::Constant(_) | Token::Letter(_) | Token::Function(_) | Token::Sign('('), ..]
+                [Token::Constant(_) | Token::Letter(_) | Token::Function(..) | Token::Sign('('), ..]
             );
             if !(divided || self.take('*') || without_a_sign) {
                 return Some(product);
@@ -280,11 +265,11 @@ impl Expression<'_> {
             Token::Number(number) => Some(*number),
             Token::Constant(value) => Some(Known::exactly(*value)),
             Token::Letter(index) => self.letters.get(*index).copied().map(Known::exactly),
-            Token::Function(function) => {
+            Token::Function(function, slope) => {
                 // ln(4)² is the square of ln 4, ln 4² the logarithm of 16
                 let bracket = matches!(self.tokens, [Token::Sign('('), ..]);
                 let argument = if bracket { self.atom() } else { self.power() }?;
-                Some(function.of(argument))
+                Some(argument.through(function(argument.value), slope(argument.value)))
             }
             Token::Sign('-') => self.power().map(|x| x.through(-x.value, -1.0)),
             Token::Sign('+') => self.power(),

@@ -1,27 +1,29 @@
 //! Answers on standard output: text for people, JSON Lines for programs.
 
 use std::io::{self, Write};
+use std::iter;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use serde_json::{Map, Value};
 
-use super::answer::parameters_of;
-use super::appendix::Beside;
-use super::sheet::Voice;
-use super::terminal::{command_lines, folded, labelled, stacked, width};
-use super::{Answer, Appendix, Kind, Options, Question, Stated, shown};
+use super::answer::Unjudged;
+use super::options::Voice;
+use super::terminal::{command_lines, labelled, stacked, width};
+use super::{Answer, Appendix, Contents, Options, Question, Stated, command_line};
 use crate::error::{Error, Result};
+use crate::estimate::Estimate;
 use crate::numbers::{plus_minus, rounded, shortened, std_errors};
 use crate::plot::{Edition, Figure};
 use crate::run::Part;
 
 /// Prints the question, before its rows are computed.
-pub(super) fn heading(question: &'static Question, options: &Options, voice: Voice) -> Result<()> {
+pub(super) fn heading(question: &'static Question, options: &Options) -> Result<()> {
     let stated = question.at(options)?;
     if silent(options) {
         return Ok(());
     }
-    if voice == Voice::Brief {
+    if options.voice == Voice::Brief {
         return title(question.id, &stated.title, options);
     }
     let mut text = format!("\n{}  {}\n\n", question.id, stated.title);
@@ -29,9 +31,12 @@ pub(super) fn heading(question: &'static Question, options: &Options, voice: Voi
     if options.edition == Edition::Solution {
         text += &format!("\n{}", paragraph(&stated.answer));
         text += &format!("\n{}", labelled("    closed form  ", &stated.formula, width()));
-        let own = options.own(question);
+        let changed = options.parameters().filter(|(parameter, value)| *value != parameter.default);
+        let own: Vec<_> =
+            changed.map(|(parameter, value)| format!("{} = {}", parameter.name, value.shortened())).collect();
         if !own.is_empty() {
-            text += &labelled("    below        ", &format!("{own}, instead of the sheet's"), width());
+            let own = format!("{}, instead of the sheet's", own.join(", "));
+            text += &labelled("    below        ", &own, width());
         }
     }
     put(&text)
@@ -44,7 +49,7 @@ pub(super) fn title(id: &str, title: &str, options: &Options) -> Result<()> {
 
 /// Prints a row.
 pub(super) fn row(answer: &Answer, options: &Options) -> Result<()> {
-    let empty = answer.exact().is_none() && answer.found().is_none() && answer.sentence().is_none();
+    let empty = !answer.is_a_number() && answer.note.is_none();
     if silent(options) || options.edition == Edition::Student || empty {
         return Ok(());
     }
@@ -52,48 +57,40 @@ pub(super) fn row(answer: &Answer, options: &Options) -> Result<()> {
 }
 
 /// Saves the figures, and prints what follows the rows. With --json, prints the rows.
-pub(super) fn ending(
-    question: &'static Question,
-    answers: &[Answer],
-    options: &Options,
-    voice: Voice,
-) -> Result<()> {
+pub(super) fn ending(question: &'static Question, answers: &[Answer], options: &Options) -> Result<()> {
     let stated = question.at(options)?;
-    if options.shard.is_some() {
-        let mut shards = answers.iter().filter(|answer| answer.part().is_some());
-        let printed = shards.try_for_each(|answer| json(&stated, answer, &[], options));
-        return printed.or_else(until_the_pipe_closes);
-    }
+    let student = options.edition == Edition::Student;
     let mut rows = Vec::new();
-    for answer in answers.iter().filter(|answer| shown(answer, options.edition)) {
+    for answer in answers.iter().filter(|answer| answer.shown_in(options.edition)) {
         let paths = save(answer.figures(options.edition), options)?;
-        // in the student edition one row a question will do, and those with something to mark
-        if options.edition == Edition::Solution || rows.is_empty() || !paths.is_empty() {
+        let wanted = match options.shard {
+            Some(_) => answer.outcome.as_ref().is_some_and(|outcome| outcome.part.is_some()),
+            // in the student edition one row a question will do, and those with something to mark
+            None => !student || rows.is_empty() || !paths.is_empty(),
+        };
+        if wanted {
             rows.push((answer, paths));
         }
     }
     if options.json {
-        let printed = rows.iter().try_for_each(|(answer, paths)| json(&stated, answer, paths, options));
-        return printed.or_else(until_the_pipe_closes);
-    } else if voice == Voice::Brief || options.quiet {
+        let lines = rows.iter().map(|(answer, paths)| Line::of(answer, paths, student.then_some(&stated)));
+        return json(lines);
+    } else if options.voice != Voice::Full {
         return Ok(());
     }
     let mut text = String::new();
-    if options.edition == Edition::Solution {
-        if !stated.wrong.is_empty() {
-            text += "\n    classic wrong answers\n";
-        }
+    if !student && !stated.wrong.is_empty() {
+        text += "\n    classic wrong answers\n";
         for (answer, slip) in &stated.wrong {
             text += &labelled("    · ", &format!("{answer}: {slip}"), width());
         }
     }
-    let drawn: String =
-        rows.iter().flat_map(|(_, paths)| svgs(paths)).map(|path| figure_line(path)).collect();
+    let drawn: String = rows.iter().flat_map(|(_, paths)| figure_lines(paths)).collect();
     if !drawn.is_empty() {
         text += &format!("\n{drawn}");
     }
-    if options.edition == Edition::Solution {
-        let (command, remark) = options.command(question, answers.iter());
+    if !student {
+        let (command, remark) = command_line::repeating(question, answers, options);
         text += "\n    again\n";
         text += &command_lines(&command, width());
         if let Some(remark) = remark {
@@ -115,8 +112,10 @@ fn save<'f>(figures: impl IntoIterator<Item = &'f Figure>, options: &Options) ->
     Ok(paths)
 }
 
-fn figure_line(path: &Path) -> String {
-    format!("    figure       {}\n", path.display())
+/// A line for each figure; its other files have the same name.
+fn figure_lines(paths: &[PathBuf]) -> impl Iterator<Item = String> {
+    let drawn = paths.iter().filter(|path| path.extension().is_some_and(|ending| ending == "svg"));
+    drawn.map(|path| format!("    figure       {}\n", path.display()))
 }
 
 /// Prints one line per question, once the whole worksheet is done.
@@ -134,7 +133,7 @@ pub(super) fn summary(answered: &[(&Question, Vec<Answer>)], options: &Options) 
             _ => "✗",
         };
         let of = if judged.is_empty() { "–".into() } else { format!("{right} of {}", judged.len()) };
-        let judged_by_z = rows.iter().filter(|row| row.agrees().is_some()).filter_map(Answer::z);
+        let judged_by_z = rows.iter().filter(|row| row.right().is_some()).filter_map(Answer::z);
         let largest = judged_by_z.map(f64::abs).reduce(f64::max);
         let largest = largest.map_or("–".into(), |z| format!("{z:.2}"));
         let seconds = rows.iter().filter_map(Answer::seconds).fold(0.0, |sum, seconds| sum + seconds);
@@ -148,7 +147,6 @@ pub(super) fn summary(answered: &[(&Question, Vec<Answer>)], options: &Options) 
 fn besides(rows: &[Answer]) -> String {
     let mut counts: Vec<(&str, usize)> = Vec::new();
     for word in rows.iter().filter(|row| row.right().is_none()).map(Answer::verdict) {
-        let word = word.split(':').next().unwrap_or(word);
         match counts.iter_mut().find(|(known, _)| *known == word) {
             Some((_, count)) => *count += 1,
             None if word.is_empty() => {}
@@ -158,34 +156,26 @@ fn besides(rows: &[Answer]) -> String {
     counts.iter().map(|(word, count)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
 }
 
-/// Saves an appendix's figures, and prints it if it is `wanted`.
-pub(super) fn appendix(appendix: &Appendix, wanted: bool, options: &Options) -> Result<()> {
-    let paths = save(&appendix.figures, options)?;
-    if !wanted {
+/// Saves an appendix's figures, and prints it.
+pub(super) fn appendix(appendix: &Appendix, made: &Contents, options: &Options) -> Result<()> {
+    let paths = save(&made.figures, options)?;
+    if options.json {
+        // the figures belong to the whole appendix, and are listed once
+        let figures = iter::once(&paths[..]).chain(iter::repeat(&[][..]));
+        return json(made.records.iter().zip(figures).map(|(record, paths)| Line::of(record, paths, None)));
+    } else if options.voice != Voice::Full {
         return Ok(());
     }
-    if options.json {
-        let print = |(index, record)| {
-            // the figures belong to the whole appendix, and are listed once
-            let figures = if index == 0 { &paths[..] } else { &[] };
-            writeln!(io::stdout(), "{}", serde_json::to_string(&Row::of(record, figures))?)
-        };
-        return appendix.records.iter().enumerate().try_for_each(print).or_else(until_the_pipe_closes);
-    }
-    let mut text = format!("\n{}\n\n{}", appendix.title, paragraph(&appendix.text));
-    for table in &appendix.tables {
+    let mut text = format!("\n{}\n\n{}", appendix.title, paragraph(&made.text));
+    for table in &made.tables {
         text += &format!("\n{}\n", paragraph(&table.caption));
         for line in stacked(table, width() - 4) {
             text += &format!("{}\n", format!("    {line}").trim_end());
         }
     }
     text += "\n";
-    text.extend(svgs(&paths).map(|path| figure_line(path)));
+    text.extend(figure_lines(&paths));
     put(&text)
-}
-
-fn svgs(paths: &[PathBuf]) -> impl Iterator<Item = &PathBuf> {
-    paths.iter().filter(|path| path.extension().is_some_and(|ending| ending == "svg"))
 }
 
 /// Prints where a page is.
@@ -200,7 +190,7 @@ pub(super) fn line(text: &str) -> Result<()> {
 
 /// Whether no text for people is printed.
 fn silent(options: &Options) -> bool {
-    options.json || options.quiet
+    options.json || options.voice == Voice::Quiet
 }
 
 /// A closed pipe is no error, as the reader has seen enough; a full disk is one.
@@ -211,12 +201,13 @@ pub(super) fn until_the_pipe_closes(error: io::Error) -> Result<()> {
     }
 }
 
+/// A row for programs.
 #[derive(Serialize)]
-struct Row<'a> {
+struct Line<'a> {
     question: &'a str,
     what: &'a str,
-    kind: Kind,
-    parameters: serde_json::Map<String, serde_json::Value>,
+    kind: &'static str,
+    parameters: Map<String, Value>,
     truth: Option<f64>,
     estimate: Option<f64>,
     std_error: Option<f64>,
@@ -228,62 +219,54 @@ struct Row<'a> {
     part: Option<&'a Part>,
 }
 
-impl<'a> Row<'a> {
-    fn of(answer: &'a Answer, figures: &'a [PathBuf]) -> Self {
+impl<'a> Line<'a> {
+    /// For a student, only the question's title stands for what is answered.
+    fn of(answer: &'a Answer, figures: &'a [PathBuf], for_a_student: Option<&'a Stated>) -> Self {
+        let told = for_a_student.is_none();
         let estimate = answer.estimate();
+        let outcome = answer.outcome.as_ref();
         Self {
-            question: answer.question(),
-            what: answer.what(),
-            kind: answer.kind(),
-            parameters: parameters_of(answer),
-            truth: answer.exact(),
-            estimate: answer.found(),
-            std_error: estimate.and_then(|estimate| estimate.std_error()),
-            draws: estimate.map(|estimate| estimate.draws()),
-            seed: answer.seed(),
+            question: &answer.question,
+            what: for_a_student.map_or(&answer.what, |stated| &stated.title),
+            kind: if answer.unjudged.is_none() { "answer" } else { "demonstration" },
+            parameters: parameters(answer),
+            truth: answer.truth.filter(|_| told),
+            estimate: answer.found().filter(|_| told),
+            std_error: estimate.and_then(Estimate::std_error),
+            draws: estimate.map(Estimate::draws),
+            seed: outcome.map(|outcome| outcome.seed),
             seconds: answer.seconds(),
             figures,
-            part: answer.part(),
-        }
-    }
-
-    /// The row without the answer, and with a title that does not give it away.
-    fn without_answer(self, stated: &'a Stated) -> Self {
-        Self {
-            what: &stated.title,
-            truth: None,
-            estimate: None,
-            std_error: None,
-            draws: None,
-            seed: None,
-            seconds: None,
-            ..self
+            part: outcome.and_then(|outcome| outcome.part.as_ref()),
         }
     }
 }
 
-fn json(stated: &Stated, answer: &Answer, figures: &[PathBuf], options: &Options) -> io::Result<()> {
-    let row = Row::of(answer, figures);
-    let row = if options.edition == Edition::Solution { row } else { row.without_answer(stated) };
-    writeln!(io::stdout(), "{}", serde_json::to_string(&row)?)
+/// A row's parameters as JSON.
+pub(super) fn parameters(answer: &Answer) -> Map<String, Value> {
+    answer.parameters.iter().map(|(name, value)| (name.clone(), value.json())).collect()
+}
+
+fn json<'a>(mut lines: impl Iterator<Item = Line<'a>>) -> Result<()> {
+    let printed = lines.try_for_each(|line| writeln!(io::stdout(), "{}", serde_json::to_string(&line)?));
+    printed.or_else(until_the_pipe_closes)
 }
 
 fn solution(answer: &Answer, options: &Options) -> String {
     let width = width();
-    let part = answer.question().find('(').and_then(|at| answer.question().get(at..));
+    let part = answer.question.find('(').and_then(|at| answer.question.get(at..));
     let mut title = part.map_or(String::new(), |part| format!("{part} "));
-    title += answer.what();
-    let otherwise = options.varied([answer]);
-    for (name, value) in answer.parameters().iter().filter(|(name, _)| otherwise.contains(name)) {
+    title += &answer.what;
+    for (name, value) in answer.parameters.iter().filter(|(name, value)| !as_given(name, *value, options)) {
         title += &format!(", {name} = {}", value.shortened());
     }
     let mut text = labelled("    ", &title, width);
     let verdict = answer.verdict();
-    if let Some(truth) = answer.exact() {
+    if let Some(truth) = answer.truth {
         text += &format!("        truth    {}\n", shortened(truth));
     }
     if let Some(estimate) = answer.estimate() {
-        let mut line = interval(answer);
+        let mut line = interval(estimate);
         if estimate.draws() > 1 {
             line += " (95 %)";
         }
@@ -297,52 +280,53 @@ fn solution(answer: &Answer, options: &Options) -> String {
             line = verdict.into();
         }
         let label = if line == verdict { " ".repeat(17) } else { "        estimate ".into() };
-        let why = answer.on_purpose().unwrap_or_default();
-        let fits = 17 + line.chars().count() + 2 + why.chars().count() <= width;
-        text += &match (why.is_empty(), fits) {
-            (true, _) => format!("{label}{line}\n"),
-            (_, true) => format!("{label}{line}: {why}\n"),
-            _ => format!("{label}{line}:\n{}", labelled(&" ".repeat(17), why, width)),
+        text += &match &answer.unjudged {
+            Some(Unjudged::WrongOnPurpose(why)) => {
+                let fits = 17 + line.chars().count() + 2 + why.chars().count() <= width;
+                if fits {
+                    format!("{label}{line}: {why}\n")
+                } else {
+                    format!("{label}{line}:\n{}", labelled(&" ".repeat(17), why, width))
+                }
+            }
+            _ => format!("{label}{line}\n"),
         };
     } else if let Some(value) = answer.found() {
         text += &labelled("        found    ", &format!("{}   {verdict}", shortened(value)), width);
     }
-    if options.verbose && answer.estimate().is_some() {
-        text += &labelled("        cost     ", &cost(answer), width);
+    if let Some(outcome) = answer.outcome.as_ref().filter(|_| options.verbose) {
+        let (cost, draws) = (outcome.cost, outcome.estimate.draws());
+        let mut took = format!("{draws} draws, {} random numbers", cost.random_numbers);
+        if cost.evaluations > 0 {
+            took += &format!(", {} evaluations", cost.evaluations);
+        }
+        took += &format!(", {:.3} s", outcome.elapsed.as_secs_f64());
+        text += &labelled("        cost     ", &took, width);
     }
-    for sentence in
-        cut_short(answer).into_iter().chain(answer.caution()).chain(answer.sentence().map(str::to_owned))
-    {
+    for sentence in [cut_short(answer), answer.caution(), answer.note.clone()].into_iter().flatten() {
         text += &labelled("        ", &sentence, width);
     }
     text
 }
 
-fn cost(answer: &Answer) -> String {
-    let (cost, draws) = (answer.cost(), answer.estimate().map_or(0, |estimate| estimate.draws()));
-    let mut text = format!("{draws} draws, {} random numbers", cost.random_numbers);
-    if cost.evaluations > 0 {
-        text += &format!(", {} evaluations", cost.evaluations);
-    }
-    text + &format!(", {:.3} s", answer.seconds().unwrap_or_default())
-}
-
 /// The remark for a row that did not reach the error asked for.
 pub(super) fn cut_short(answer: &Answer) -> Option<String> {
-    let (shortfall, reached) = (answer.shortfall()?, answer.estimate()?.std_error()?);
+    let outcome = answer.outcome.as_ref()?;
+    let (shortfall, reached) = (outcome.shortfall?, outcome.estimate.std_error()?);
     Some(format!(
         "Cut short at a std error of {}: {shortfall}. Ask for a larger error, or give a time: --seconds.",
         rounded(reached, 2)
     ))
 }
 
+/// Whether a row's parameter is the question's own: others cannot be given in the command that repeats it.
+pub(super) fn as_given(name: &str, value: super::Value, options: &Options) -> bool {
+    options.value(&name.replace('_', "-")) == Some(value)
+}
+
 /// `mean ± half-width` of the 95 % interval
-pub(super) fn interval(answer: &Answer) -> String {
-    let Some(estimate) = answer.estimate() else { return String::new() };
-    match estimate.reach() {
-        Some(reach) => plus_minus(estimate.mean(), reach),
-        None => estimate.to_string(),
-    }
+pub(crate) fn interval(estimate: &Estimate) -> String {
+    estimate.reach().map_or_else(|| estimate.to_string(), |reach| plus_minus(estimate.mean(), reach))
 }
 
 /// Text in lines that fit, indented.
@@ -351,87 +335,7 @@ fn paragraph(text: &str) -> String {
 }
 
 /// Writes to standard output and flushes.
-fn put(text: &str) -> Result<()> {
+pub(super) fn put(text: &str) -> Result<()> {
     let mut out = io::stdout().lock();
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).or_else(until_the_pipe_closes)
-}
-
-/// `--hint`
-pub(super) fn hints(questions: &[&'static Question], options: &Options) -> Result<()> {
-    let hint = |question: &&'static Question| {
-        Ok(labelled(&format!("{}  ", question.id), &question.at(options)?.hint, width()))
-    };
-    put(&questions.iter().map(hint).collect::<Result<String>>()?)
-}
-
-/// Folds the help to the width of the terminal; descriptions are in a column of their own.
-fn options_folded(text: &str) -> String {
-    let lines = text.lines().map(|line| match line.char_indices().nth(OPTION) {
-        Some((at, _)) if line.starts_with("    --") => {
-            let (option, help) = line.split_at(at);
-            labelled(option, help, width())
-        }
-        _ => folded(line, width()) + "\n",
-    });
-    lines.collect()
-}
-
-/// The width of the column of options in the help.
-const OPTION: usize = 25;
-
-/// `--help` of an appendix's example
-pub(super) fn help_beside(beside: &Beside) -> Result<()> {
-    let mut text = format!("{}\n\nOptions\n", beside.about);
-    if let Some(seconds) = beside.seconds {
-        text += &format!("    --seconds S          {seconds}\n");
-    }
-    text += "    --seed S             seed of all random numbers (1)
-    --out DIR            folder for figures (worksheet)
-    --slides             every figure as a slide, too, of 16 to 9 with large type
-    --json               one JSON object a line
-";
-    put(&options_folded(&text))
-}
-
-/// `--help`
-pub(super) fn help(questions: &[&'static Question]) -> Result<()> {
-    let mut text = String::new();
-    if let [question] = questions {
-        let stated = question.at(&Options::default())?;
-        text += &format!("{}  {}\n\n{}\n\n", question.id, stated.title, stated.statement);
-    } else {
-        text += "The worksheet: every question answered in closed form, by an estimator with its error bar, \
-                 and by a figure.\n\n";
-    }
-    text += "Options
-    --draws N            draws of every estimator (default: each question's own \
-             number)
-    --error E            draws until the std error is E, in the units of the answer, by \
-             a pilot run: never fewer than the pilot's (10⁶ where they are cheap), and about 5 s of them a \
-             row at most
-    --seconds S          draws for S seconds an estimator";
-    if questions.len() > 1 {
-        text += " (0.1 s at most where many are compared, in the last part of the page)";
-    }
-    text += "\n    --seed S             seed of all random numbers (1)
-    --threads T          threads (one a core; for the same draws the results are the same for any number)
-    --out DIR            folder for figures and pages (worksheet)
-    --slides             every figure as a slide, too, of 16 to 9 with large type
-    --json               one JSON object a line
-    --verbose            what every row took: draws, random numbers, evaluations, seconds
-    --edition NAME       student, solution or both (solution)
-    --variant NAME       the numbers of this variant; any text is a name
-    --variants FILE      a worksheet for each name in a file, one a line, and one key (with worksheet)
-    --shard K/N          only shard K of N of every run, for --merge (with --json)
-    --merge FILE...      puts every run together from what its shards printed
-    --hint               a hint that does not give the answer away
-";
-    for question in questions {
-        for parameter in question.parameters {
-            let owner = if questions.len() > 1 { format!("{}.", question.id) } else { String::new() };
-            let option = format!("--{owner}{} {}", parameter.name, parameter.default.placeholder());
-            text += &format!("    {option:<20} {} ({})\n", parameter.help, parameter.default);
-        }
-    }
-    put(&options_folded(&text))
 }

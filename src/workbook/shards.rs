@@ -2,12 +2,13 @@
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
+use serde_json::{Map, Value};
 
 use super::Answer;
-use super::answer::parameters_of;
+use super::print::parameters;
 use crate::error::{Error, Result};
 use crate::run::{Outcome, Part, merge};
 
@@ -24,77 +25,66 @@ struct Row {
 struct Name {
     question: String,
     what: String,
-    parameters: serde_json::Map<String, serde_json::Value>,
+    parameters: Map<String, Value>,
 }
 
 /// The merged runs of all rows, in the order in which the example makes them.
 #[derive(Debug)]
-pub(super) struct Shards {
-    names: Vec<Name>,
-    outcomes: RefCell<VecDeque<Outcome>>,
-}
+pub(super) struct Shards(RefCell<VecDeque<(Name, Outcome)>>);
 
 impl Shards {
     /// Reads the files with what each shard has printed.
     pub fn read(paths: &[PathBuf]) -> Result<Self> {
-        let mut files = Vec::new();
-        for path in paths {
-            let refused = |reason| Error::Parts { reason: format!("{}: {reason}", path.display()) };
-            let text = std::fs::read_to_string(path).map_err(|error| refused(error.to_string()))?;
-            let lines = text.lines().filter(|line| !line.trim().is_empty());
-            let rows: Vec<Row> = lines
-                .map(serde_json::from_str)
-                .collect::<Result<_, _>>()
-                .map_err(|error| refused(format!("this is not what --shard K/N --json prints ({error})")))?;
-            files.push(rows);
-        }
-        let rows = files.first().map_or(0, Vec::len);
-        let (mut names, mut outcomes) = (Vec::new(), VecDeque::new());
-        for row in 0..rows {
-            let mut name: Option<Name> = None;
-            let mut parts = Vec::new();
-            for (path, file) in paths.iter().zip(&files) {
-                let refused = |reason: &str| {
-                    Err(Error::Parts { reason: format!("{} has {reason} the others", path.display()) })
-                };
-                let Some(row) = file.get(row).filter(|_| file.len() == rows) else {
-                    return refused("more or fewer rows than");
-                };
-                if *name.get_or_insert_with(|| row.name.clone()) != row.name {
-                    return refused("rows of other estimators or parameters than");
-                }
-                parts.push(row.part.clone());
-            }
-            names.extend(name);
-            outcomes.push_back(merge(&parts)?);
-        }
-        Ok(Self { names, outcomes: RefCell::new(outcomes) })
-    }
-
-    /// The next run that the example asks for.
-    pub fn next(&self) -> Result<Outcome> {
-        let next = self.outcomes.borrow_mut().pop_front();
-        next.ok_or_else(|| Error::Parts { reason: "they have fewer rows than this example".into() })
-    }
-
-    /// Checks that the shards belong to these answers: same order, same parameters.
-    pub fn belong_to(&self, answers: &[Answer]) -> Result<()> {
-        let mut names = self.names.iter().peekable();
-        for answer in answers {
-            let name = Name {
-                question: answer.question().into(),
-                what: answer.what().into(),
-                parameters: parameters_of(answer),
+        let files = paths.iter().map(|path| rows_of(path)).collect::<Result<Vec<_>>>()?;
+        let names = |file: &[Row]| file.iter().map(|row| row.name.clone()).collect::<Vec<_>>();
+        let first = files.first().map_or(Vec::new(), |file| names(file));
+        for (path, file) in paths.iter().zip(&files) {
+            let reason = if file.len() != first.len() {
+                "more or fewer rows than"
+            } else if names(file) != first {
+                "rows of other estimators or parameters than"
+            } else {
+                continue;
             };
-            names.next_if_eq(&&name);
+            return Err(Error::Parts { reason: format!("{} has {reason} the others", path.display()) });
         }
-        match names.next() {
-            None => Ok(()),
-            Some(Name { what, .. }) => Err(Error::Parts {
-                reason: format!(
-                    "\"{what}\" is of another example or other options: give those of the shards"
-                ),
-            }),
-        }
+        let merged = first.into_iter().enumerate().map(|(index, name)| {
+            let parts = files.iter().filter_map(|file| file.get(index));
+            Ok((name, merge(&parts.map(|row| row.part.clone()).collect::<Vec<_>>())?))
+        });
+        merged.collect::<Result<_>>().map(|rows| Self(RefCell::new(rows)))
+    }
+
+    /// The next run that the example asks for, which must be for this row.
+    pub fn next(&self, answer: &Answer) -> Result<Outcome> {
+        let next = self.0.borrow_mut().pop_front();
+        let (name, outcome) =
+            next.ok_or_else(|| Error::Parts { reason: "they have fewer rows than this example".into() })?;
+        let here = Name {
+            question: answer.question.clone(),
+            what: answer.what.clone(),
+            parameters: parameters(answer),
+        };
+        if name == here { Ok(outcome) } else { Err(of_another(&name)) }
+    }
+
+    /// Checks that the example has asked for all.
+    pub fn are_used_up(&self) -> Result<()> {
+        self.0.borrow().front().map_or(Ok(()), |(name, _)| Err(of_another(name)))
+    }
+}
+
+fn rows_of(path: &Path) -> Result<Vec<Row>> {
+    let refused = |reason| Error::Parts { reason: format!("{}: {reason}", path.display()) };
+    let text = std::fs::read_to_string(path).map_err(|error| refused(error.to_string()))?;
+    let rows = text.lines().filter(|line| !line.trim().is_empty()).map(serde_json::from_str);
+    rows.collect::<Result<_, _>>()
+        .map_err(|error| refused(format!("this is not what --shard K/N --json prints ({error})")))
+}
+
+fn of_another(name: &Name) -> Error {
+    let what = &name.what;
+    Error::Parts {
+        reason: format!("\"{what}\" is of another example or other options: give those of the shards"),
     }
 }

@@ -2,7 +2,8 @@
 
 use std::cell::{Cell, RefCell};
 
-use super::answer::Words;
+use super::answer::Unjudged;
+use super::options::Voice;
 use super::{Answer, AnswerFn, Options, Question, Value, print};
 use crate::doubt::Doubt;
 use crate::error::Result;
@@ -19,19 +20,9 @@ use crate::stream::{Stream, mix};
 pub struct Sheet {
     question: &'static Question,
     options: Options,
-    voice: Voice,
     rows: RefCell<Vec<Answer>>,
     /// How many rows are printed; `None` before the question is.
     printed: Cell<Option<usize>>,
-}
-
-/// What is printed while a question is answered.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Voice {
-    /// Only its title.
-    Brief,
-    /// The question, then every row when it is done.
-    Full,
 }
 
 /// The draws of a row that asks for no other number.
@@ -49,21 +40,30 @@ pub(super) fn answered(
     question: &'static Question,
     answer: AnswerFn,
     options: &Options,
-    voice: Voice,
 ) -> Result<Vec<Answer>> {
     let options = options.for_question(question);
-    let sheet = Sheet { question, options, voice, rows: RefCell::default(), printed: Cell::new(None) };
-    if voice == Voice::Brief {
+    let sheet = Sheet { question, options, rows: RefCell::default(), printed: Cell::new(None) };
+    if sheet.options.voice == Voice::Brief {
         sheet.print_first(0)?;
     }
     answer(&sheet)?;
-    if let Some(shards) = sheet.options.shards.as_deref() {
-        shards.belong_to(&sheet.rows.borrow())?;
+    if let Some(shards) = &sheet.options.shards {
+        shards.are_used_up()?;
     }
     sheet.print_first(usize::MAX)?;
     let rows = sheet.rows.into_inner();
-    print::ending(question, &rows, &sheet.options, voice)?;
+    print::ending(question, &rows, &sheet.options)?;
     Ok(rows)
+}
+
+/// Answers a question in the student's edition beside the key, and saves its figures.
+pub(super) fn for_students(
+    question: &'static Question,
+    answer: AnswerFn,
+    options: &Options,
+) -> Result<Vec<Answer>> {
+    let options = Options { edition: Edition::Student, voice: Voice::Quiet, ..options.clone() };
+    answered(question, answer, &options)
 }
 
 impl Sheet {
@@ -98,11 +98,11 @@ impl Sheet {
     /// Adds a row about `what`, which must not give the answer away. Its parameters are the question's own.
     pub fn row(&self, what: impl AsRef<str>) -> Row<'_> {
         let mut answer = Answer::new(self.question.id, what.as_ref());
-        for (name, value) in self.options.parameters() {
-            answer = answer.parameter(name.replace('-', "_"), value);
+        for (parameter, value) in self.options.parameters() {
+            answer.set_parameter(&parameter.name.replace('-', "_"), value);
         }
         self.rows.borrow_mut().push(answer);
-        Row { sheet: self, index: self.last(), draws: DRAWS, most_work: false }
+        Row { sheet: self, index: self.last(), draws: DRAWS }
     }
 
     /// Adds a figure of the answer to the row before it. A question's first one is printed, the others are
@@ -124,15 +124,15 @@ impl Sheet {
         if self.options.shard.is_none() && !enough {
             self.print_all_but_the_last()?;
             for figure in make(self.options.edition)?.into() {
-                self.change(self.last(), |answer| answer.figure(figure));
+                self.change(self.last(), |answer| answer.figures.push(figure));
             }
         }
         Ok(())
     }
 
-    fn change(&self, index: usize, change: impl FnOnce(Answer) -> Answer) {
+    fn change(&self, index: usize, change: impl FnOnce(&mut Answer)) {
         if let Some(answer) = self.rows.borrow_mut().get_mut(index) {
-            *answer = change(answer.clone());
+            change(answer);
         }
     }
 
@@ -144,10 +144,10 @@ impl Sheet {
     /// shards may turn out not to belong to these rows only at the end.
     fn print_first(&self, done: usize) -> Result<()> {
         if self.printed.get().is_none() {
-            print::heading(self.question, &self.options, self.voice)?;
+            print::heading(self.question, &self.options)?;
         }
         let printed = self.printed.get().unwrap_or(0);
-        if self.voice == Voice::Full {
+        if self.options.voice == Voice::Full {
             for answer in self.rows.borrow().iter().take(done).skip(printed) {
                 print::row(answer, &self.options)?;
             }
@@ -173,74 +173,63 @@ pub struct Row<'s> {
     sheet: &'s Sheet,
     index: usize,
     draws: u64,
-    /// Whether even a few draws of it take too long.
-    most_work: bool,
 }
 
 impl Row<'_> {
-    fn set(self, change: impl FnOnce(Answer) -> Answer) -> Self {
+    fn set(self, change: impl FnOnce(&mut Answer)) -> Self {
         self.sheet.change(self.index, change);
         self
     }
 
     /// The part of the question that it belongs to: "(ii)".
     pub fn part(self, part: &str) -> Self {
-        self.set(|answer| answer.part_of_question(part))
+        self.set(|answer| answer.question += part)
     }
 
     /// A parameter that differs from the question's, or is an additional one.
-    pub fn parameter(self, name: &'static str, value: impl Into<Value>) -> Self {
-        self.set(|answer| answer.parameter(name, value))
+    pub fn parameter(self, name: &str, value: impl Into<Value>) -> Self {
+        self.set(|answer| answer.set_parameter(name, value.into()))
     }
 
     /// The exact value; `None` if none is known.
     pub fn truth(self, truth: impl Into<Option<f64>>) -> Self {
-        let truth = truth.into();
-        self.set(|answer| match truth {
-            Some(truth) => answer.truth(truth),
-            None => answer,
-        })
+        self.set(|answer| answer.truth = truth.into())
     }
 
     /// A value without an error bar, computed numerically.
     pub fn value(self, value: f64) -> Self {
-        self.set(|answer| answer.value(value))
+        self.set(|answer| answer.value = Some(value))
     }
 
-    /// A sentence: the answer itself if it is no number, or a remark on the number.
-    pub fn note(self, note: impl Into<String>) -> Self {
-        self.set(|answer| answer.note(note))
+    /// A sentence: the answer itself if it is no number, or a remark on the number. A second one is appended.
+    pub fn note(self, note: impl AsRef<str>) -> Self {
+        self.set(|answer| answer.add_note(note.as_ref()))
     }
 
     /// Marks it as a classic mistake, described in a few words, that need not agree with the truth.
-    pub fn wrong_on_purpose(self, why: impl Into<String>) -> Self {
-        self.set(|answer| answer.not_judged(Words::WrongOnPurpose(why.into())))
+    pub fn wrong_on_purpose(self, why: &str) -> Self {
+        self.set(|answer| answer.unjudged = Some(Unjudged::WrongOnPurpose(why.into())))
     }
 
     /// If there is a reason to doubt its error bar that the estimator itself does not know, the row is not
     /// judged.
     pub fn doubt(self, doubt: Option<Doubt>) -> Self {
-        match doubt {
-            Some(doubt) => self.set(|answer| answer.not_judged(Words::Doubted(doubt))),
-            None => self,
-        }
+        self.set(|answer| answer.unjudged = doubt.map(Unjudged::Doubted).or(answer.unjudged.take()))
     }
 
     /// The number of draws, if it should not be a million when the command line names none.
-    pub fn draws(mut self, draws: u64) -> Self {
-        self.draws = draws;
-        self
+    pub fn draws(self, draws: u64) -> Self {
+        Self { draws, ..self }
     }
 
     /// The approximate number of random numbers per draw. If these are too many, the row is left out, and
     /// says so.
-    pub fn takes(mut self, numbers: f64) -> Self {
-        self.most_work = numbers > MOST_WORK_A_DRAW;
-        if !self.most_work {
+    pub fn takes(self, numbers: f64) -> Self {
+        if numbers <= MOST_WORK_A_DRAW {
             return self;
         }
         let note = format!("Left out: a draw takes about {} random numbers.", rounded(numbers, 2));
-        self.set(|answer| answer.note(note).not_judged(Words::LeftOut))
+        self.note(note).set(|answer| answer.unjudged = Some(Unjudged::LeftOut))
     }
 
     /// Runs an estimator for it: for the draws, the time or the error on the command line.
@@ -248,21 +237,28 @@ impl Row<'_> {
     /// # Errors
     /// Those of [`Run::estimate`](crate::Run::estimate).
     pub fn estimate(self, estimator: &(impl Estimator + ?Sized)) -> Result<Self> {
-        if self.sheet.options.edition == Edition::Student || self.most_work {
+        let Options { edition, budget, one_figure, shards, .. } = &self.sheet.options;
+        let left_out = |row: &Answer| row.unjudged == Some(Unjudged::LeftOut);
+        if *edition == Edition::Student || self.sheet.rows.borrow().get(self.index).is_some_and(left_out) {
             return Ok(self);
         }
         self.sheet.print_all_but_the_last()?;
-        let (draws, cut) = match self.sheet.options.budget {
-            None if self.sheet.options.shards.is_none() => within_reason(estimator, self.draws),
-            _ => (self.draws, None),
+        if let Some(shards) = shards {
+            let outcome = self.sheet.rows.borrow().get(self.index).map(|row| shards.next(row)).transpose()?;
+            return Ok(self.doubt(estimator.doubt()).set(|answer| answer.outcome = outcome));
+        }
+        let (draws, cut) = match budget {
+            None => within_reason(estimator, self.draws),
+            Some(_) => (self.draws, None),
         };
         // so that the worksheets of a class take a minute
-        let draws = if self.sheet.options.one_figure { (draws / 8).max(2) } else { draws };
+        let draws = if *one_figure { (draws / 8).max(2) } else { draws };
         let outcome = self.sheet.options.run(estimator, draws)?;
-        let this = self.doubt(estimator.doubt());
-        Ok(this.set(|answer| match cut {
-            Some(cut) => answer.outcome(&outcome).note(cut),
-            None => answer.outcome(&outcome),
+        Ok(self.doubt(estimator.doubt()).set(|answer| {
+            answer.outcome = Some(outcome);
+            if let Some(cut) = cut {
+                answer.add_note(&cut);
+            }
         }))
     }
 }

@@ -5,9 +5,9 @@
 //! wrong answer differs by at least 5 % from the right one, and every classic wrong answer by at least 5 %
 //! from every other one.
 
-use super::options::Options;
-use super::{Number, Question};
+use super::{Number, Options, Question};
 use crate::error::{Error, Result};
+use crate::numbers::typeset;
 use crate::stream::mix;
 
 /// The most tries to find a fair variant; a few are enough.
@@ -40,43 +40,36 @@ impl Options {
         if name.is_empty() {
             return Err(Error::Usage("a variant needs a name: any text or number".into()));
         }
-        let mut chosen = Self::default();
         for question in questions {
-            chosen.choose(question, name)?;
+            self.put_below(fair(question, name)?);
         }
-        self.put_below(chosen);
         Ok(self)
-    }
-
-    fn choose(&mut self, question: &'static Question, name: &str) -> Result<()> {
-        let seed = question
-            .id
-            .bytes()
-            .chain([0])
-            .chain(name.bytes())
-            .fold(0, |seed, byte| mix(seed ^ u64::from(byte)));
-        let free: Vec<_> = question.parameters.iter().filter(|of| !of.variants.is_empty()).collect();
-        for attempt in 0..TRIES {
-            let mut options = Self::default();
-            let mut word = mix(seed ^ mix(attempt));
-            for parameter in &free {
-                word = mix(word);
-                // the remainder's bias is below 20/2⁶⁴, which is negligible
-                let place = (word % parameter.variants.len() as u64) as usize;
-                let value = parameter.variants.get(place).copied().unwrap_or(f64::NAN);
-                options.set(question, parameter.name, &value.to_string())?;
-            }
-            if is_fair(question, &options) {
-                self.take_for(question, options);
-                return Ok(());
-            }
-        }
-        Err(Error::Usage(format!("question {} has no fair variant for \"{name}\"", question.id)))
     }
 }
 
+/// The first fair choice of a question's parameters for this name.
+fn fair(question: &'static Question, name: &str) -> Result<Options> {
+    let letters = question.id.bytes().chain([0]).chain(name.bytes());
+    let seed = letters.fold(0, |seed, byte| mix(seed ^ u64::from(byte)));
+    for attempt in 0..TRIES {
+        let mut options = Options::default();
+        let mut word = mix(seed ^ mix(attempt));
+        for parameter in question.parameters.iter().filter(|of| !of.variants.is_empty()) {
+            word = mix(word);
+            // the remainder's bias is below 20/2⁶⁴, which is negligible
+            let place = (word % parameter.variants.len() as u64) as usize;
+            let value = parameter.variants.get(place).copied().unwrap_or(f64::NAN);
+            options.set(question, parameter.name, &value.to_string())?;
+        }
+        if is_fair(question, &options) {
+            return Ok(options);
+        }
+    }
+    Err(Error::Usage(format!("question {} has no fair variant for \"{name}\"", question.id)))
+}
+
 /// Whether no answer to the question can be taken for another, and all of its texts can be written.
-pub(super) fn is_fair(question: &'static Question, options: &Options) -> bool {
+fn is_fair(question: &'static Question, options: &Options) -> bool {
     question.at(options).is_ok()
         && question.numbers.iter().all(|number| tells_apart(question, number, options))
 }
@@ -129,21 +122,16 @@ pub(super) fn folder(name: &str) -> String {
     folder.trim().replace(' ', "_")
 }
 
-/// The questions' numbers in a variant: the rows of a key, as question, what, formula and truth.
-pub(super) fn key(
-    questions: impl Iterator<Item = &'static Question>,
-    options: &Options,
-) -> Result<Vec<[String; 4]>> {
-    let mut rows = Vec::new();
-    for question in questions {
-        for number in question.numbers {
-            let truths = question.evaluate(number.formula, options)?;
-            let truth = truths.first().copied().unwrap_or(f64::NAN);
-            let id = format!("{}{}", question.id, number.part);
-            rows.push([id, number.asked(), number.formula.into(), crate::numbers::typeset(truth, 7)]);
-        }
-    }
-    Ok(rows)
+/// The numbers that a question asks for in a variant, as rows of a key: the name, the question, what is asked
+/// for, the formula and the truth.
+pub(super) fn key(name: &str, question: &'static Question, options: &Options) -> Result<Vec<Vec<String>>> {
+    let row = |number: &Number| {
+        let truths = question.evaluate(number.formula, options)?;
+        let truth = typeset(truths.first().copied().unwrap_or(f64::NAN), 7);
+        let id = format!("{}{}", question.id, number.part);
+        Ok(vec![name.into(), id, number.asked(), number.formula.into(), truth])
+    };
+    question.numbers.iter().map(row).collect()
 }
 
 #[cfg(test)]

@@ -6,6 +6,8 @@ mod alarms;
 #[cfg(feature = "workbook")]
 pub mod drawn;
 pub mod rivals;
+pub mod notebook;
+pub mod programs;
 
 pub use alarms::{BUDGETS, alarm, deviations};
 use std::f64::consts::{PI, TAU};

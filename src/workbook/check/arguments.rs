@@ -2,15 +2,16 @@
 
 use lexopt::{Arg, Parser};
 
-use super::super::{options, questions};
+use super::super::{command_line, options, questions};
 use super::draws::Source;
 use super::programs::Language;
 use crate::error::{Error, Result};
 use crate::run::Budget;
 
 /// What is to be judged or printed.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) enum Action {
+    #[default]
     Mine,
     Help,
     Probes,
@@ -18,13 +19,17 @@ pub(super) enum Action {
     Template(Language),
     Answer(String),
     Draws(Vec<Source>),
-    Class { answers: Option<String>, draws: Option<String> },
+    Class,
 }
 
 /// What the command line asks for.
+#[derive(Default)]
 pub(super) struct Arguments {
     pub question: String,
     pub action: Action,
+    /// A file of a class's answers, and a folder of their draws.
+    pub answers: Option<String>,
+    pub draws_in: Option<String>,
     pub own: Vec<(String, String)>,
     pub variant: Option<String>,
     pub digits: Option<u32>,
@@ -37,49 +42,39 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub fn read(question: &str) -> Result<Self> {
-        Self::parse(Parser::from_env(), question)
-    }
-
-    fn parse(mut line: Parser, question: &str) -> Result<Self> {
-        let mut arguments = Self {
-            question: question.into(),
-            action: Action::Mine,
-            own: Vec::new(),
-            variant: None,
-            digits: None,
-            budget: None,
-            seed: 1,
-            json: false,
-            csv: false,
-            exit_code: false,
-        };
+        let mut line = Parser::from_env();
+        let mut arguments = Self { question: question.into(), seed: 1, ..Self::default() };
         let (mut probe, mut about_estimator) = (None, None);
         let mut actions: Vec<(&'static str, Action)> = Vec::new();
-        while let Some(argument) = line.next().map_err(options::usage)? {
+        while let Some(argument) = line.next().map_err(command_line::usage)? {
             let name = match argument {
                 Arg::Short('h') | Arg::Long("help") => {
                     arguments.action = Action::Help;
                     return Ok(arguments);
                 }
                 Arg::Long(name) => name.to_owned(),
-                other => return Err(options::usage(other.unexpected())),
+                other => return Err(command_line::usage(other.unexpected())),
             };
             match name.as_str() {
-                "question" => arguments.question = options::text(&mut line, "--question")?,
+                "question" => arguments.question = command_line::text(&mut line, "--question")?,
                 "json" => arguments.json = true,
                 "csv" => arguments.csv = true,
                 "exit-code" => arguments.exit_code = true,
                 "probes" => actions.push(("--probes", Action::Probes)),
                 "mistakes" => actions.push(("--mistakes", Action::Mistakes)),
                 "template" => {
-                    let language = Language::read(&options::text(&mut line, "--template")?)?;
+                    let language = Language::read(&command_line::text(&mut line, "--template")?)?;
                     actions.push(("--template", Action::Template(language)));
                 }
-                "answer" => actions.push(("--answer", Action::Answer(options::text(&mut line, "--answer")?))),
-                "variant" => arguments.variant = Some(options::text(&mut line, "--variant")?),
-                "digits" => arguments.digits = Some(options::count(&mut line, "--digits")?.min(15) as u32),
+                "answer" => {
+                    actions.push(("--answer", Action::Answer(command_line::text(&mut line, "--answer")?)))
+                }
+                "variant" => arguments.variant = Some(command_line::text(&mut line, "--variant")?),
+                "digits" => {
+                    arguments.digits = Some(command_line::count(&mut line, "--digits")?.min(15) as u32)
+                }
                 "draws-from" => {
-                    let files: Vec<_> = line.values().map_err(options::usage)?.collect();
+                    let files: Vec<_> = line.values().map_err(command_line::usage)?.collect();
                     let text = |file: std::ffi::OsString| file.into_string().ok();
                     let files: Option<Vec<String>> = files.into_iter().map(text).collect();
                     let files =
@@ -87,26 +82,26 @@ impl Arguments {
                     let sources = files.iter().map(|file| Source::read(file)).collect();
                     actions.push(("--draws-from", Action::Draws(sources)));
                 }
-                "probe" => probe = Some(options::count(&mut line, "--probe")? as usize),
+                "probe" => probe = Some(command_line::count(&mut line, "--probe")? as usize),
                 "answers" => {
-                    let answers = Some(options::text(&mut line, "--answers")?);
-                    actions.push(("--answers", Action::Class { answers, draws: None }));
+                    arguments.answers = Some(command_line::text(&mut line, "--answers")?);
+                    actions.push(("--answers", Action::Class));
                 }
                 "draws-in" => {
-                    let draws = Some(options::text(&mut line, "--draws-in")?);
-                    actions.push(("--draws-in", Action::Class { answers: None, draws }));
+                    arguments.draws_in = Some(command_line::text(&mut line, "--draws-in")?);
+                    actions.push(("--draws-in", Action::Class));
                 }
                 "draws" | "error" | "seconds" => {
-                    options::read_budget(&mut line, &name, &mut arguments.budget)?;
+                    command_line::read_budget(&mut line, &name, &mut arguments.budget)?;
                     about_estimator = Some(format!("--{name}"));
                 }
                 "seed" => {
                     about_estimator = Some("--seed".into());
-                    arguments.seed = options::whole(&mut line, "--seed")?;
+                    arguments.seed = command_line::whole(&mut line, "--seed")?;
                 }
                 _ => {
                     options::parameter(questions(), &name, &name)?;
-                    let value = options::text(&mut line, &format!("--{name}"))?;
+                    let value = command_line::text(&mut line, &format!("--{name}"))?;
                     arguments.own.push((name, value));
                 }
             }
@@ -122,7 +117,7 @@ impl Arguments {
             }
             _ => {}
         }
-        let judged = matches!(arguments.action, Action::Answer(_) | Action::Class { .. });
+        let judged = matches!(arguments.action, Action::Answer(_) | Action::Class);
         if let (false, Some((name, _))) = (judged, arguments.own.first()) {
             return Err(Error::Usage(format!(
                 "--{name} is for numbers worked out by hand: it needs --answer or --answers"
@@ -132,7 +127,7 @@ impl Arguments {
         if let (false, Some((name, _))) = (judged, beside.iter().find(|(_, given)| *given)) {
             return Err(Error::Usage(format!("--{name} needs --answer or --answers")));
         }
-        if arguments.csv && (arguments.json || !matches!(arguments.action, Action::Class { .. })) {
+        if arguments.csv && (arguments.json || !matches!(arguments.action, Action::Class)) {
             return Err(Error::Usage("--csv needs --answers or --draws-in, and excludes --json".into()));
         }
         Ok(arguments)
@@ -141,26 +136,21 @@ impl Arguments {
 
 /// The one action asked for; for a class, answers, draws or both.
 fn one_of(actions: Vec<(&'static str, Action)>, about_estimator: Option<&str>) -> Result<Action> {
+    let apart = |before: &str, name: &str| {
+        Err(Error::Usage(format!("{before} and {name} cannot be combined: give one of them")))
+    };
     let mut given = None::<(&'static str, Action)>;
     for (name, action) in actions {
-        given = Some(match (given, action) {
-            (None, action) => (name, action),
+        match given {
             // if the same option is given again, the last one counts
-            (Some((before, _)), action) if before == name => (name, action),
-            (Some((_, Action::Class { answers, draws })), Action::Class { answers: more, draws: others }) => {
-                (name, Action::Class { answers: more.or(answers), draws: others.or(draws) })
+            Some((before, other)) if before != name && (other != Action::Class || action != other) => {
+                return apart(before, name);
             }
-            (Some((before, _)), _) => {
-                return Err(Error::Usage(format!(
-                    "{before} and {name} cannot be combined: give one of them"
-                )));
-            }
-        });
+            _ => given = Some((name, action)),
+        }
     }
     match (given, about_estimator) {
-        (Some((name, _)), Some(other)) => {
-            Err(Error::Usage(format!("{name} and {other} cannot be combined: give one of them")))
-        }
+        (Some((name, _)), Some(other)) => apart(name, other),
         (given, _) => Ok(given.map_or(Action::Mine, |(_, action)| action)),
     }
 }

@@ -6,13 +6,13 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::super::by_hand::{self, Judgement};
+use super::super::by_hand;
 use super::super::terminal::{folded, width};
 use super::super::{Options, Table};
 use super::arguments::Arguments;
 use super::draws::{self, Source};
 use super::{Verdict, exercise};
-use crate::check::{self, Finding};
+use crate::check::{self, Finding, Probe};
 use crate::error::{Error, Result};
 
 /// The judgement of each student's answers, in the order of the files.
@@ -20,6 +20,7 @@ pub struct Report {
     rows: Vec<Row>,
 }
 
+#[derive(Default)]
 struct Row {
     student: String,
     question: String,
@@ -33,15 +34,34 @@ struct Row {
     reason: String,
 }
 
+impl Row {
+    fn of(student: &str, question: &str, judged: Result<Self>) -> Self {
+        let judged = judged.unwrap_or_else(|error| Self { reason: error.to_string(), ..Self::default() });
+        Self { student: student.into(), question: question.into(), ..judged }
+    }
+
+    fn ratio(&self, places: usize) -> String {
+        self.ratio.map_or(String::new(), |ratio| format!("{ratio:.places$}"))
+    }
+
+    fn mistake_id(&self) -> Option<&str> {
+        self.mistake.as_ref().map(|(id, _)| id.as_str())
+    }
+
+    fn word(&self) -> &'static str {
+        self.verdict.map_or("not judged", Verdict::word)
+    }
+}
+
 impl Report {
     /// Judges a CSV file with the columns student, question, answer and optionally variant, and a folder of
     /// files `STUDENT_QUESTION.txt` of draws.
-    pub fn of(answers: Option<&str>, draws: Option<&str>, arguments: &Arguments) -> Result<Self> {
+    pub fn of(arguments: &Arguments) -> Result<Self> {
         let mut rows = Vec::new();
-        if let Some(path) = answers {
+        if let Some(path) = &arguments.answers {
             read_answers(path, arguments, &mut rows)?;
         }
-        if let Some(path) = draws {
+        if let Some(path) = &arguments.draws_in {
             read_folder(Path::new(path), &mut rows)?;
         }
         Ok(Self { rows })
@@ -62,8 +82,8 @@ impl Report {
                 *counts.entry((row.question.as_str(), id.as_str(), name.as_str())).or_default() += 1;
             }
         }
-        let mut summary: Vec<_> =
-            counts.into_iter().map(|((question, id, name), count)| (question, id, name, count)).collect();
+        let counted = counts.into_iter().map(|((question, id, name), count)| (question, id, name, count));
+        let mut summary: Vec<_> = counted.collect();
         summary.sort_by_key(|(question, _, _, count)| (std::cmp::Reverse(*count), *question));
         summary
     }
@@ -72,8 +92,8 @@ impl Report {
     pub fn json(&self) -> String {
         let rows = self.rows.iter().map(|row| {
             json!({
-                "student": row.student, "question": row.question, "verdict": word(row.verdict),
-                "mistake": row.mistake.as_ref().map(|(id, _)| id), "ratio": row.ratio, "reason": row.reason,
+                "student": row.student, "question": row.question, "verdict": row.word(),
+                "mistake": row.mistake_id(), "ratio": row.ratio, "reason": row.reason,
             })
         });
         let summary = self.summary().into_iter().map(|(question, id, name, students)| {
@@ -82,41 +102,25 @@ impl Report {
         rows.chain(summary).map(|line| line.to_string()).collect::<Vec<_>>().join("\n")
     }
 
-    /// The rows, without the summary.
+    /// The rows as CSV, without the summary.
     pub fn csv(&self) -> Result<String> {
-        let failed = |error: String| Error::Write { path: "the report".into(), reason: error };
-        let mut out = csv::Writer::from_writer(Vec::new());
-        let mut write =
-            |fields: [&str; 6]| out.write_record(fields).map_err(|error| failed(error.to_string()));
-        write(["student", "question", "verdict", "mistake", "ratio", "reason"])?;
-        for row in &self.rows {
-            let ratio = row.ratio.map_or(String::new(), |ratio| format!("{ratio:.6}"));
-            let mistake = row.mistake.as_ref().map_or("", |(id, _)| id);
-            write([&row.student, &row.question, word(row.verdict), mistake, &ratio, &row.reason])?;
-        }
-        let bytes = out.into_inner().map_err(|error| failed(error.to_string()))?;
-        let text = String::from_utf8(bytes).map_err(|error| failed(error.to_string()))?;
-        Ok(text.trim_end().into())
+        let rows = self.rows.iter().map(|row| {
+            let [student, question, reason] = [&row.student, &row.question, &row.reason].map(String::clone);
+            let mistake = row.mistake_id().unwrap_or_default().to_owned();
+            vec![student, question, row.word().into(), mistake, row.ratio(6), reason]
+        });
+        let columns = ["student", "question", "verdict", "mistake", "ratio", "reason"];
+        Ok(Table::new("", columns, rows).csv()?.trim_end().into())
     }
-}
-
-fn word(verdict: Option<Verdict>) -> &'static str {
-    verdict.map_or("not judged", Verdict::word)
 }
 
 /// As tables: the rows, then the summary.
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let rows = self.rows.iter().map(|row| {
-            let ratio = row.ratio.map_or(String::new(), |ratio| format!("{ratio:.4}"));
-            let verdict = word(row.verdict).to_owned();
-            let mistake = match (&row.mistake, row.verdict) {
-                (Some((id, _)), _) => id.clone(),
-                (None, Some(Verdict::Right)) => String::new(),
-                (None, Some(Verdict::Wrong)) => "unknown".into(),
-                _ => String::new(),
-            };
-            vec![row.student.clone(), row.question.clone(), verdict, mistake, ratio]
+            let unnamed = if row.verdict == Some(Verdict::Wrong) { "unknown" } else { "" };
+            let mistake = row.mistake_id().unwrap_or(unnamed).into();
+            vec![row.student.clone(), row.question.clone(), row.word().into(), mistake, row.ratio(4)]
         });
         let table = Table::new("", ["student", "question", "verdict", "mistake", "ratio"], rows);
         let counted = self.summary().into_iter().map(|(question, id, name, count)| {
@@ -129,8 +133,7 @@ impl fmt::Display for Report {
             writeln!(f, "{}\n", cut(&summary))?;
         }
         for row in self.rows.iter().filter(|row| matches!(row.verdict, None | Some(Verdict::Undecided))) {
-            let (student, question, verdict, reason) =
-                (&row.student, &row.question, word(row.verdict), &row.reason);
+            let (student, question, verdict, reason) = (&row.student, &row.question, row.word(), &row.reason);
             writeln!(f, "{}", folded(&format!("{student}, {question}: {verdict}: {reason}"), width()))?;
         }
         write!(
@@ -156,17 +159,14 @@ fn cut(table: &Table) -> String {
 }
 
 /// Where each student's answer to each question was read.
-#[derive(Default)]
-struct Given(HashMap<(String, String), String>);
+type Places = HashMap<(String, String), String>;
 
-impl Given {
-    fn once(&mut self, student: &str, question: &str, place: String) -> Result<()> {
-        match self.0.insert((student.into(), question.into()), place.clone()) {
-            Some(before) => Err(Error::Usage(format!(
-                "{before} and {place} both answer {question} for {student}: keep one of them"
-            ))),
-            None => Ok(()),
-        }
+fn once(places: &mut Places, student: &str, question: &str, place: String) -> Result<()> {
+    match places.insert((student.into(), question.into()), place.clone()) {
+        Some(before) => Err(Error::Usage(format!(
+            "{before} and {place} both answer {question} for {student}: keep one of them"
+        ))),
+        None => Ok(()),
     }
 }
 
@@ -181,14 +181,14 @@ fn read_answers(path: &str, arguments: &Arguments, rows: &mut Vec<Row>) -> Resul
         csv::ReaderBuilder::new().trim(csv::Trim::All).delimiter(delimiter).flexible(true).from_reader(text);
     let headers = reader.headers().map_err(|error| unread(&error))?.clone();
     let column = |name: &str| headers.iter().position(|header| header.eq_ignore_ascii_case(name));
-    let [mut student, mut question, mut answer] = [0; 3];
-    for (name, place) in [("student", &mut student), ("question", &mut question), ("answer", &mut answer)] {
+    let needed = |name: &str| {
         let missing =
             || Error::Usage(format!("{path} has no column {name}; it needs student, question, answer"));
-        *place = column(name).ok_or_else(missing)?;
-    }
+        column(name).ok_or_else(missing)
+    };
+    let [student, question, answer] = [needed("student")?, needed("question")?, needed("answer")?];
     let variant = column("variant");
-    let mut given = Given::default();
+    let mut places = Places::new();
     for record in reader.records() {
         let record = record.map_err(|error| unread(&error))?;
         let line = record.position().map_or(0, csv::Position::line);
@@ -198,7 +198,7 @@ fn read_answers(path: &str, arguments: &Arguments, rows: &mut Vec<Row>) -> Resul
             text.ok_or_else(|| at(format!("there is no {name}")))
         };
         let (student, question) = (field(student, "student")?, field(question, "question")?);
-        given.once(student, question, format!("line {line}"))?;
+        once(&mut places, student, question, format!("line {line}"))?;
         let mut parameters: Vec<_> =
             arguments.own.iter().filter(|(name, _)| has(question, name)).cloned().collect();
         let cell = variant.and_then(|place| record.get(place)).unwrap_or("").trim();
@@ -217,7 +217,7 @@ fn read_answers(path: &str, arguments: &Arguments, rows: &mut Vec<Row>) -> Resul
         let parameters =
             super::parameters(question, name, &parameters).map_err(|error| at(error.to_string()))?;
         let text = record.get(answer).unwrap_or("");
-        rows.push(judged(student, question, text, &parameters, arguments.digits));
+        rows.push(Row::of(student, question, judged(question, text, &parameters, arguments.digits)));
     }
     Ok(())
 }
@@ -228,28 +228,16 @@ fn has(question: &str, name: &str) -> bool {
     super::super::question(id).is_ok_and(|question| question.parameters.iter().any(|of| of.name == name))
 }
 
-fn judged(student: &str, question: &str, text: &str, parameters: &Options, digits: Option<u32>) -> Row {
-    let row = |verdict, mistake, ratio, reason| Row {
-        student: student.into(),
-        question: question.into(),
-        verdict,
-        mistake,
+fn judged(question: &str, text: &str, parameters: &Options, digits: Option<u32>) -> Result<Row> {
+    let (judgement, ratio) = by_hand::judged(question, text, parameters, digits)?;
+    let first = judgement.slips().first();
+    Ok(Row {
+        verdict: Some(Verdict::from(&judgement)),
+        mistake: first.map(|slip| (slip.id.to_owned(), slip.words.to_owned())),
         ratio,
-        reason,
-    };
-    let (judgement, ratio) = match by_hand::judged(question, text, parameters, digits) {
-        Ok(judged) => judged,
-        Err(error) => return row(None, None, None, error.to_string()),
-    };
-    let (verdict, mistake) = match &judgement {
-        Judgement::Right => (Verdict::Right, None),
-        Judgement::TooFewDigits { .. } => (Verdict::Undecided, None),
-        Judgement::LooksLike(slips) => {
-            (Verdict::Wrong, slips.first().map(|slip| (slip.id.to_owned(), slip.words.to_owned())))
-        }
-        Judgement::Unknown { .. } => (Verdict::Wrong, None),
-    };
-    row(Some(verdict), mistake, ratio, judgement.to_string())
+        reason: judgement.to_string(),
+        ..Row::default()
+    })
 }
 
 /// Reads draws of each student and question from files `STUDENT_QUESTION.txt`, with lines as for
@@ -265,7 +253,7 @@ fn read_folder(folder: &Path, rows: &mut Vec<Row>) -> Result<()> {
         }
     }
     files.sort();
-    let mut given = Given::default();
+    let mut places = Places::new();
     for path in files {
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let stem = name.strip_suffix(".txt").or(name.strip_suffix(".csv")).unwrap_or(&name);
@@ -274,37 +262,24 @@ fn read_folder(folder: &Path, rows: &mut Vec<Row>) -> Result<()> {
             return Err(Error::Usage(format!("{name} is not named STUDENT_QUESTION.txt")));
         };
         let exercise = exercise(question).map_err(|error| Error::Usage(format!("{name}: {error}")))?;
-        given.once(student, question, name.clone())?;
+        once(&mut places, student, question, name.clone())?;
         let source = Source { probe: None, file: path.display().to_string() };
-        let probes = exercise.probes_of(question);
-        let diagnosis = draws::measure(&[source], &probes).and_then(|measured| check::diagnose(&measured));
-        let (student, question) = (student.to_owned(), question.to_owned());
-        rows.push(match diagnosis {
-            Ok(diagnosis) => {
-                let first = diagnosis.candidates.first();
-                let said = diagnosis.to_string();
-                let measured = diagnosis.measurements.first();
-                Row {
-                    student,
-                    question,
-                    verdict: Some(Verdict::of(diagnosis.finding)),
-                    mistake: first.map(|candidate| (candidate.id(), candidate.name())),
-                    ratio: measured.map(|of| of.ratio().mean),
-                    reason: match (diagnosis.finding, first) {
-                        (Finding::Known, Some(candidate)) => candidate.name(),
-                        _ => said.lines().next().unwrap_or("").into(),
-                    },
-                }
-            }
-            Err(error) => Row {
-                student,
-                question,
-                verdict: None,
-                mistake: None,
-                ratio: None,
-                reason: error.to_string(),
-            },
-        });
+        rows.push(Row::of(student, question, drawn(source, &exercise.probes_of(question))));
     }
     Ok(())
+}
+
+fn drawn(source: Source, probes: &[&'static Probe]) -> Result<Row> {
+    let diagnosis = check::diagnose(&draws::measure(&[source], probes)?)?;
+    let first = diagnosis.candidates.first();
+    Ok(Row {
+        verdict: Some(Verdict::from(diagnosis.finding)),
+        mistake: first.map(|candidate| (candidate.id(), candidate.name())),
+        ratio: diagnosis.measurements.first().map(|of| of.ratio().mean),
+        reason: match (diagnosis.finding, first) {
+            (Finding::Known, Some(candidate)) => candidate.name(),
+            _ => diagnosis.to_string().lines().next().unwrap_or_default().into(),
+        },
+        ..Row::default()
+    })
 }

@@ -29,7 +29,7 @@ use draws::Source;
 pub use mistakes::mistakes;
 
 /// All exercises, in the order of the worksheet.
-pub fn exercises() -> [&'static Exercise; 6] {
+fn exercises() -> [&'static Exercise; 6] {
     [
         inversion::mistakes::Samples::exercise(),
         rectangle::mistakes::Integral::exercise(),
@@ -80,19 +80,31 @@ pub(super) enum Verdict {
 }
 
 impl Verdict {
-    fn of(finding: Finding) -> Self {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Right => "right",
+            Self::Wrong => "wrong",
+            Self::Undecided => "undecided",
+        }
+    }
+}
+
+impl From<Finding> for Verdict {
+    fn from(finding: Finding) -> Self {
         match finding {
             Finding::NothingWrong => Self::Right,
             Finding::Known | Finding::Unknown => Self::Wrong,
             Finding::Unclear => Self::Undecided,
         }
     }
+}
 
-    fn word(self) -> &'static str {
-        match self {
-            Self::Right => "right",
-            Self::Wrong => "wrong",
-            Self::Undecided => "undecided",
+impl From<&Judgement> for Verdict {
+    fn from(judgement: &Judgement) -> Self {
+        match judgement {
+            Judgement::Right => Self::Right,
+            Judgement::TooFewDigits { .. } => Self::Undecided,
+            Judgement::LooksLike(_) | Judgement::Unknown { .. } => Self::Wrong,
         }
     }
 }
@@ -125,8 +137,8 @@ impl Arguments {
             Action::Answer(text) => self.judge_answer(text)?,
             Action::Draws(sources) => self.judge_draws(sources)?,
             Action::Mine => self.judge_mine(mine)?,
-            Action::Class { answers, draws } => {
-                let report = class::Report::of(answers.as_deref(), draws.as_deref(), self)?;
+            Action::Class => {
+                let report = class::Report::of(self)?;
                 let text = match (self.json, self.csv) {
                     (true, _) => report.json(),
                     (_, true) => report.csv()?,
@@ -163,9 +175,9 @@ impl Arguments {
             format!("Cut short: {shortfall} on a probe. Ask for a larger error, or give a time: --seconds.\n")
         });
         let diagnosis = check::diagnose(&measurements)?.shown_by(mine);
-        let verdict = Verdict::of(diagnosis.finding);
+        let verdict = Verdict::from(diagnosis.finding);
         if self.json {
-            return Ok((self.diagnosis_json(&diagnosis, &[]), verdict));
+            return Ok((self.diagnosis_json(&diagnosis), verdict));
         }
         let (question, seed) = (&self.question, self.seed);
         Ok((
@@ -177,7 +189,7 @@ impl Arguments {
     /// Runs the reader's estimator on every probe. Also returns how far the slowest probe was from the error
     /// asked for, if it was cut short.
     fn measure(&self, mine: &Attempt<'_>) -> Result<(Vec<Measurement>, Option<Shortfall>)> {
-        let (mut measurements, mut shortfall) = (Vec::new(), None::<Shortfall>);
+        let mut measured = Vec::new();
         for probe in mine.exercise.probes_of(&self.question) {
             // ratios are judged, so the error asked for is that of the ratio
             let budget = match self.budget.unwrap_or(Budget::Draws(DRAWS)) {
@@ -191,31 +203,27 @@ impl Arguments {
                     mine.measure(probe, &run, budget)
                 })
             })?;
-            measurements.push(measurement);
             let as_ratio = |short: Shortfall| Shortfall { std_error: short.std_error / probe.scale, ..short };
-            let further = |short: &Shortfall| shortfall.is_none_or(|before| short.draws > before.draws);
-            shortfall = outcome.shortfall.map(as_ratio).filter(further).or(shortfall);
+            measured.push((measurement, outcome.shortfall.map(as_ratio)));
         }
-        Ok((measurements, shortfall))
+        let (measurements, shortfalls): (_, Vec<_>) = measured.into_iter().unzip();
+        let slowest = shortfalls.into_iter().flatten().max_by(|a, b| a.draws.total_cmp(&b.draws));
+        Ok((measurements, slowest))
     }
 
     fn judge_answer(&self, text: &str) -> Result<(String, Verdict)> {
         let (_, number) = by_hand::asked(&self.question)?;
         let parameters = parameters(&self.question, self.variant.as_deref(), &self.own)?;
         let (judgement, ratio) = by_hand::judged(&self.question, text, &parameters, self.digits)?;
-        let verdict = match &judgement {
-            Judgement::Right => Verdict::Right,
-            Judgement::TooFewDigits { .. } => Verdict::Undecided,
-            Judgement::LooksLike(_) | Judgement::Unknown { .. } => Verdict::Wrong,
-        };
+        let verdict = Verdict::from(&judgement);
         if !self.json {
             return Ok((format!("{}, {}: {judgement}", self.question, number.asked()), verdict));
         }
-        let slips: &[Slip] = if let Judgement::LooksLike(slips) = &judgement { slips } else { &[] };
         let slip = |slip: &Slip| json!({ "id": slip.id, "name": slip.words });
         let line = json!({
             "question": self.question, "answer": text, "verdict": verdict.word(), "ratio": ratio,
-            "mistakes": slips.iter().map(slip).collect::<Vec<_>>(), "reason": judgement.to_string(),
+            "mistakes": judgement.slips().iter().map(slip).collect::<Vec<_>>(),
+            "reason": judgement.to_string(),
         });
         Ok((line.to_string(), verdict))
     }
@@ -225,11 +233,9 @@ impl Arguments {
         let probes = exercise.probes_of(&self.question);
         let measurements = draws::measure(sources, &probes)?;
         let diagnosis = check::diagnose(&measurements)?;
-        let verdict = Verdict::of(diagnosis.finding);
-        let elsewhere =
-            if verdict == Verdict::Wrong { fitting_elsewhere(&measurements, &probes) } else { Vec::new() };
+        let verdict = Verdict::from(diagnosis.finding);
         if self.json {
-            return Ok((self.diagnosis_json(&diagnosis, &elsewhere), verdict));
+            return Ok((self.diagnosis_json(&diagnosis), verdict));
         }
         let mut text = String::new();
         if let [only] = &measurements[..] {
@@ -244,32 +250,35 @@ impl Arguments {
             });
             text += &format!("Draws: {}.\n", each.collect::<Vec<_>>().join(", "));
         }
-        for (number, others) in elsewhere {
-            let others: Vec<String> =
-                others.iter().map(|(other, probe)| format!("{other}, “{probe}”")).collect();
-            text += &format!(
-                "The draws for probe {number} fit the truth of probe {}: were they made for that probe?\n",
-                others.join("; or of ")
-            );
+        for measurement in measurements.iter().filter(|_| verdict == Verdict::Wrong) {
+            let fitting = fitting_elsewhere(measurement, &probes);
+            if !fitting.is_empty() {
+                let name = |probe: &&Probe| format!("{}, “{probe}”", number_of(probe, &probes));
+                text += &format!(
+                    "The draws for probe {} fit the truth of probe {}: were they made for that probe?\n",
+                    number_of(measurement.probe, &probes),
+                    fitting.iter().map(name).collect::<Vec<_>>().join("; or of ")
+                );
+            }
         }
         text += &diagnosis.to_string();
         text += &format!("\n--question {} --probes describes the probes.", self.question);
         Ok((text, verdict))
     }
 
-    fn diagnosis_json(&self, diagnosis: &Diagnosis, elsewhere: &[Elsewhere<'_>]) -> String {
+    fn diagnosis_json(&self, diagnosis: &Diagnosis) -> String {
+        let verdict = Verdict::from(diagnosis.finding);
+        let mine = self.action == Action::Mine;
         let probes = diagnosis.exercise.probes_of(&self.question);
         let mistakes: Vec<Value> = diagnosis.candidates.iter().map(candidate_json).collect();
         let measured = diagnosis.measurements.iter().map(|of| {
             let ratio = of.ratio();
-            let fits = elsewhere.iter().find(|(number, _)| *number == number_of(of.probe, &probes));
-            let fits: Vec<usize> =
-                fits.map_or(Vec::new(), |(_, others)| others.iter().map(|(n, _)| *n).collect());
+            let fitting = fitting_elsewhere(of, &probes).into_iter().map(|probe| number_of(probe, &probes));
+            let fits: Vec<usize> = fitting.filter(|_| verdict == Verdict::Wrong && !mine).collect();
             json!({
-                "probe": number_of(of.probe, &probes), "what": of.probe.to_string(),
-                    "truth": of.probe.truth,
-                "estimate": of.estimate.mean(), "std_error": of.estimate.std_error(),
-                "draws": of.estimate.draws(), "ratio": ratio.mean, "fits_probes": fits,
+                "probe": number_of(of.probe, &probes), "what": of.probe.to_string(), "fits_probes": fits,
+                "truth": of.probe.truth, "estimate": of.estimate.mean(), "ratio": ratio.mean,
+                "std_error": of.estimate.std_error(), "draws": of.estimate.draws(),
             })
         });
         let counterexample = diagnosis.counterexample.as_ref().map(|of| {
@@ -277,10 +286,10 @@ impl Arguments {
             json!({ "probe": probe, "numbers": of.numbers, "yours": of.yours, "right": of.right })
         });
         json!({
-            "question": self.question, "verdict": Verdict::of(diagnosis.finding).word(),
+            "question": self.question, "verdict": verdict.word(),
             "mistakes": mistakes, "compared": diagnosis.compared, "counterexample": counterexample,
             "probes": measured.collect::<Vec<_>>(),
-            "seed": (self.action == Action::Mine).then_some(self.seed),
+            "seed": mine.then_some(self.seed),
         })
         .to_string()
     }
@@ -313,17 +322,10 @@ fn number_of(probe: &Probe, probes: &[&Probe]) -> usize {
     1 + probes.iter().position(|other| std::ptr::eq(*other, probe)).unwrap_or(0)
 }
 
-/// The number of the probe that draws were given for, and the other probes whose truth they fit.
-type Elsewhere<'p> = (usize, Vec<(usize, &'p Probe)>);
-
-/// Draws that do not fit their probe's truth, but another probe's.
-fn fitting_elsewhere<'p>(measurements: &[Measurement], probes: &[&'static Probe]) -> Vec<Elsewhere<'p>> {
-    let others = measurements.iter().filter(|of| !of.is_right()).map(|of| {
-        let fits = |probe: &&&'static Probe| Measurement { probe, ..*of }.is_right();
-        let fitting = probes.iter().filter(fits).map(|probe| (number_of(probe, probes), *probe)).collect();
-        (number_of(of.probe, probes), fitting)
-    });
-    others.filter(|(_, fitting): &Elsewhere<'_>| !fitting.is_empty()).collect()
+/// The other probes whose truth draws fit that do not fit their own probe's.
+fn fitting_elsewhere(of: &Measurement, probes: &[&'static Probe]) -> Vec<&'static Probe> {
+    let fits = |probe: &&'static Probe| !of.is_right() && Measurement { probe, ..*of }.is_right();
+    probes.iter().copied().filter(fits).collect()
 }
 
 /// Reports a panic in the reader's own code once, with the probe: it happens on many threads at once.

@@ -4,7 +4,7 @@
 use maud::{Markup, html};
 
 use super::super::check::{exercise, mistakes};
-use super::super::{Answer, Options, Question, print};
+use super::super::{Answer, Options, Question, command_line, print};
 use super::text::{formula, grouped, prose};
 use super::{aligned, narrow, shown};
 use crate::check::Exercise;
@@ -32,8 +32,8 @@ pub(super) fn article(question: &'static Question, answers: &[Answer], options: 
     let options = options.for_question(question);
     let stated = question.at(&options)?;
     let formulas = stated.latex.iter().map(|latex| formula(latex)).collect::<Result<Vec<_>>>()?;
-    let (command, remark) = options.command(question, answers.iter());
-    let rows: Vec<&Answer> = answers.iter().filter(|answer| numbered(answer)).collect();
+    let (command, remark) = command_line::repeating(question, answers, &options);
+    let rows: Vec<&Answer> = answers.iter().filter(|answer| answer.is_a_number()).collect();
     let figures: Vec<_> = answers.iter().flat_map(|answer| answer.figures(Edition::Solution)).collect();
     // on paper one figure is enough: beside the text, or below it if it is as wide
     let (first, others) = figures.split_at(figures.len().min(1));
@@ -45,8 +45,8 @@ pub(super) fn article(question: &'static Question, answers: &[Answer], options: 
             @for figure in aside { div.aside { (shown(figure)) } }
             @for formula in &formulas { (formula) }
             p.why { (prose(&stated.answer)) }
-            @for answer in answers.iter().filter(|answer| !numbered(answer)) {
-                @if let Some(sentence) = answer.sentence() { p.why { (prose(sentence)) } }
+            @for answer in answers.iter().filter(|answer| !answer.is_a_number()) {
+                @if let Some(sentence) = &answer.note { p.why { (prose(sentence)) } }
             }
             @for row in settling(&rows) { (in_a_line(question, row)) }
             @for figure in below { (shown(figure)) }
@@ -62,9 +62,9 @@ pub(super) fn article(question: &'static Question, answers: &[Answer], options: 
                 @if !rows.is_empty() { (table(question, &rows, &options)) }
                 @for answer in &rows {
                     @if let Some(sentence) = print::cut_short(answer) {
-                        p { (answer.what()) ": " (sentence) }
+                        p { (answer.what) ": " (sentence) }
                     }
-                    @if let Some(sentence) = answer.sentence() { p { (prose(sentence)) } }
+                    @if let Some(sentence) = &answer.note { p { (prose(sentence)) } }
                 }
                 div.figures { @for figure in others { (shown(figure)) } }
                 @if let Some(exercise) = asked_last(question) { (aligned(&mistakes(exercise))) }
@@ -80,16 +80,11 @@ fn asked_last(question: &Question) -> Option<&'static Exercise> {
     exercise.questions().last().filter(|last| *last == question.id).map(|_| exercise)
 }
 
-/// Whether the row has numbers.
-fn numbered(answer: &Answer) -> bool {
-    answer.found().is_some() || answer.exact().is_some()
-}
-
 /// The first checked row for each part of the question.
 fn settling<'a>(rows: &[&'a Answer]) -> Vec<&'a Answer> {
     let mut settling: Vec<&Answer> = Vec::new();
-    for row in rows.iter().filter(|row| row.kind() == super::super::Kind::Answer) {
-        if settling.iter().all(|before| before.question() != row.question()) {
+    for row in rows.iter().filter(|row| row.unjudged.is_none()) {
+        if settling.iter().all(|before| before.question != row.question) {
             settling.push(row);
         }
     }
@@ -100,19 +95,19 @@ fn settling<'a>(rows: &[&'a Answer]) -> Vec<&'a Answer> {
 fn in_a_line(question: &Question, row: &Answer) -> Markup {
     html! {
         p.check {
-            (part(question, row)) (prose(row.what())) ": "
-            @if let Some(truth) = row.exact() { "exactly " (shortened(truth)) }
-            @if row.estimate().is_some() {
-                @if row.exact().is_some() { ", " }
-                "estimated " (print::interval(row)) " " (row.verdict())
-            } @else if let (None, Some(value)) = (row.exact(), row.found()) { (shortened(value)) }
+            (part(question, row)) (prose(&row.what)) ": "
+            @if let Some(truth) = row.truth { "exactly " (shortened(truth)) }
+            @if let Some(estimate) = row.estimate() {
+                @if row.truth.is_some() { ", " }
+                "estimated " (print::interval(estimate)) " " (row.verdict())
+            } @else if let (None, Some(value)) = (row.truth, row.found()) { (shortened(value)) }
         }
     }
 }
 
 /// `(i) ` for a row of 5.1(i)
 fn part(question: &Question, row: &Answer) -> String {
-    match row.question().strip_prefix(question.id) {
+    match row.question.strip_prefix(question.id) {
         Some("") | None => String::new(),
         Some(part) => format!("{part} "),
     }
@@ -131,7 +126,11 @@ fn all_of_it(rows: usize, figures: usize) -> String {
 
 /// All rows.
 fn table(question: &Question, rows: &[&Answer], options: &Options) -> Markup {
-    let varied = options.varied(rows.iter().copied());
+    // one row's own parameter is named in every row
+    let parameters = || rows.iter().flat_map(|row| &row.parameters);
+    let varied = |name: &str| {
+        parameters().any(|(other, value)| other == name && !print::as_given(other, *value, options))
+    };
     html! {
         table {
             caption { "Question " (question.id) ", every row" }
@@ -142,14 +141,14 @@ fn table(question: &Question, rows: &[&Answer], options: &Options) -> Markup {
             } }
             tbody { @for row in rows { tr {
                 th scope="row" {
-                    (part(question, row)) (prose(row.what()))
-                    @for (name, value) in row.parameters().iter().filter(|(name, _)| varied.contains(name)) {
+                    (part(question, row)) (prose(&row.what))
+                    @for (name, value) in row.parameters.iter().filter(|(name, _)| varied(name)) {
                         ", " (prose(name)) " = " (value.shortened())
                     }
                 }
-                td.number data-name="exact value" { @if let Some(truth) = row.exact() { (shortened(truth)) } }
+                td.number data-name="exact value" { @if let Some(truth) = row.truth { (shortened(truth)) } }
                 td.number data-name="estimate ± 95 %" {
-                    @if row.estimate().is_some() { (print::interval(row)) }
+                    @if let Some(estimate) = row.estimate() { (print::interval(estimate)) }
                     @else if let Some(value) = row.found() { (shortened(value)) }
                 }
                 td.number data-name="z" {

@@ -6,7 +6,7 @@ mod text;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::{Answer, Appendix, Options, Question};
+use super::{Answer, Appendix, Contents, Options, Question};
 use crate::error::Result;
 use crate::plot::Figure;
 use text::prose;
@@ -33,7 +33,7 @@ pub(super) fn sheet(answered: &Answered, options: &Options) -> Result<String> {
 }
 
 /// `solution.html`: the answer key, with links to the appendices' pages.
-pub(super) fn key(answered: &Answered, appendices: &[Appendix], options: &Options) -> Result<String> {
+pub(super) fn key(answered: &Answered, appendices: &[&Appendix], options: &Options) -> Result<String> {
     Ok(whole(
         "key",
         &format!("{} — answer key", options.title),
@@ -59,7 +59,7 @@ pub(super) fn key(answered: &Answered, appendices: &[Appendix], options: &Option
 }
 
 /// `trade.html`, `extremes.html`: one page per appendix.
-pub(super) fn beside(appendix: &Appendix) -> String {
+pub(super) fn appendix(appendix: &Appendix, made: &Contents) -> String {
     whole(
         "beside",
         appendix.title,
@@ -67,9 +67,9 @@ pub(super) fn beside(appendix: &Appendix) -> String {
             header { h1 { (appendix.title) } }
             nav aria-label="Back" { a href="solution.html" { "The answer key" } }
             main {
-                p { (prose(&appendix.text)) }
-                @for table in &appendix.tables { (aligned(table)) }
-                @for figure in &appendix.figures { (shown(figure)) }
+                p { (prose(&made.text)) }
+                @for table in &made.tables { (aligned(table)) }
+                @for figure in &made.figures { (shown(figure)) }
             }
             footer { p.command { code { "cargo run --release --example " (appendix.example) } } }
         },

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::super::{Answer, Options, Question, shown};
+use super::super::{Answer, Options, Question};
 use super::text::prose;
 use crate::error::Result;
 use crate::plot::Edition;
@@ -28,7 +28,7 @@ fn drawn_into(id: &str) -> bool {
 pub(super) fn article(question: &'static Question, answers: &[Answer], options: &Options) -> Result<Markup> {
     let stated = question.at(options)?;
     let edition = Edition::Student;
-    let answers = answers.iter().filter(|answer| shown(answer, edition));
+    let answers = answers.iter().filter(|answer| answer.shown_in(edition));
     Ok(html! {
         article id=(super::id_of(question)) {
             h3 { (question.id) " " (prose(&stated.title)) }

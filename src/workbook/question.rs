@@ -1,9 +1,66 @@
-//! A question's texts with the values of its parameters.
+//! A question, and its texts with the values of its parameters.
 
-use super::grammar;
-use super::{Options, Question};
+use super::{Number, Options, Value, grammar};
 use crate::error::{Error, Result};
 use crate::numbers::typeset;
+
+/// One question of the worksheet, with all that is fixed before anything is run.
+///
+/// Texts are plain, and `latex` is LaTeX for the page. A part between « and » is a formula in the question's
+/// letters, written as answers are; [`at`](Self::at) replaces it by its value at the parameters.
+#[derive(Debug, Clone, Copy)]
+pub struct Question {
+    /// The worksheet's number.
+    pub id: &'static str,
+    /// A few words that do not give the answer away.
+    pub title: &'static str,
+    /// What is asked.
+    pub statement: &'static str,
+    /// A hint that does not give the answer away.
+    pub hint: &'static str,
+    /// The closed form in one line of plain text.
+    pub formula: &'static str,
+    /// The same in LaTeX, one displayed formula each.
+    pub latex: &'static [&'static str],
+    /// The explanation, one paragraph.
+    pub answer: &'static str,
+    /// The numbers that it asks for, with known wrong ones.
+    pub numbers: &'static [Number],
+    /// Classic wrong answers that are not numbers.
+    pub wrong: &'static [Wrong],
+    /// A correction to the sheet as it was handed out.
+    pub on_the_original: Option<&'static str>,
+    /// The file in `examples/`, without `.rs`.
+    pub example: &'static str,
+    /// Its own options.
+    pub parameters: &'static [Parameter],
+    /// Further letters of its formulas, computed from the parameters.
+    pub derived: &'static [Letter],
+}
+
+/// A classic wrong answer that is not a number.
+#[derive(Debug, Clone, Copy)]
+pub struct Wrong {
+    /// The wrong answer.
+    pub answer: &'static str,
+    /// The slip that leads there.
+    pub slip: &'static str,
+}
+
+/// An option of one question: `--name value`.
+#[derive(Debug, Clone, Copy)]
+pub struct Parameter {
+    /// Its name on the command line, without the dashes.
+    pub name: &'static str,
+    /// The default value.
+    pub default: Value,
+    /// The description, with the domain.
+    pub help: &'static str,
+    /// The values that it may have in a variant, short ones; none if it is not varied.
+    pub variants: &'static [f64],
+    /// Its letter in formulas, if it is a number.
+    pub letter: Option<Letter>,
+}
 
 /// A letter that stands for a number.
 #[derive(Debug, Clone, Copy)]
