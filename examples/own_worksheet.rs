@@ -13,7 +13,8 @@ use std::f64::consts::{FRAC_1_PI, PI};
 use std::process::ExitCode;
 
 use unbiased::lambertian::hemisphere::Hemisphere;
-use unbiased::workbook::{self, Letter, Number, Parameter, Question, Sheet, Slip, Value, Worksheet};
+use unbiased::question::{Letter, Number, Parameter, Question, Slip, Value};
+use unbiased::workbook::{self, Sheet, Worksheet};
 use unbiased::{Error, Result, f_over_p, from_uniforms};
 
 #[path = "q5_2_few_bounces.rs"]

@@ -14,11 +14,12 @@ use unbiased::lambertian::{CosinePower, Lambertian, Light, RingLight};
 use unbiased::paths::room::{BoxRoom, Scene};
 use unbiased::paths::{Bounces, FindLight, Paths, reflected};
 use unbiased::placement::{jittered, sobol};
+use unbiased::question::Value;
 use unbiased::rectangle::{Family, Genz, Integrand, Rectangle};
 use unbiased::roulette::LightModel;
 use unbiased::trade::figures;
 use unbiased::trade::{Comparison, Measured, Nature, Rival, Trade};
-use unbiased::workbook::{self, Answer, Appendix, Contents, Options, Table, Value};
+use unbiased::workbook::{self, Answer, Appendix, Contents, Options, Table};
 use unbiased::{Budget, Error, Estimator, Result, from_fn};
 
 /// A comparison, with what is estimated and the question that it belongs to.

@@ -104,6 +104,8 @@ pub mod run;
 pub mod plot;
 pub mod check;
 pub mod trade;
+#[cfg(feature = "workbook")]
+pub mod question;
 pub mod inversion;
 pub mod rectangle;
 pub mod lambertian;

@@ -12,7 +12,8 @@ use std::fs;
 use common::programs::{folder, run_in};
 use proptest::prelude::*;
 use serde_json::Value;
-use unbiased::workbook::{Judgement, Number, Options, Question, judge_answer, question, questions};
+use unbiased::question::{Number, Question, Values};
+use unbiased::workbook::{Judgement, judge_answer, question, questions};
 use unbiased::{Error, Stream};
 
 fn numbers() -> impl Iterator<Item = (&'static Question, &'static Number)> {
@@ -25,8 +26,8 @@ fn number(name: &str) -> (&'static Question, &'static Number) {
 
 type Parameters = Vec<(&'static str, f64)>;
 
-fn at(question: &Question, parameters: &[(&'static str, f64)]) -> Options {
-    let mut options = Options::default();
+fn at(question: &Question, parameters: &[(&'static str, f64)]) -> Values {
+    let mut options = Values::default();
     for (name, value) in parameters {
         options.set(question, name, &value.to_string()).unwrap();
     }
@@ -145,7 +146,7 @@ fn truths_are_those_of_independent_closed_forms() {
         [("1.2", 1.386294), ("2.1", 16.0), ("5.1(ii)", 0.128), ("5.1(iii)", 4.0), ("5.2", 0.25)]
     {
         let (question, number) = number(name);
-        let found = question.evaluate(number.formula, &Options::default()).unwrap();
+        let found = question.evaluate(number.formula, &Values::default()).unwrap();
         assert!((found[0] - truth).abs() < 1e-6, "{name}: {found:?}");
     }
 }
@@ -265,7 +266,7 @@ fn parameters_are_the_questions_own() {
         let said = row["verdict"] == "not judged" && row["reason"].as_str().unwrap().contains(part);
         assert!(said, "{name} at {parameters:?}: {row}");
     }
-    let mut options = Options::default();
+    let mut options = Values::default();
     let error = options.set(question("3.2").unwrap(), "rate", "1").unwrap_err();
     assert_eq!(error.to_string(), "there is no option --rate; --help lists them");
 }

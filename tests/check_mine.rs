@@ -355,9 +355,10 @@ fn a_class_is_judged_in_one_command() {
 /// The numbers of a student's own sheet.
 #[test]
 fn variants_are_known_by_name() {
-    use unbiased::workbook::{Options, question};
+    use unbiased::question::Values;
+    use unbiased::workbook::question;
     let question = question("5.2").unwrap();
-    let ada = Options::default().variant("Ada", [question]).unwrap();
+    let ada = Values::default().variant("Ada", [question]).unwrap();
     let [right, coins] =
         ["p_rr/(1 − p_rr)", "1/(1 − p_rr)"].map(|of| question.evaluate(of, &ada).unwrap()[0].to_string());
     for (answer, code) in [(&right, 0), (&coins, 1)] {

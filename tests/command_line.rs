@@ -8,7 +8,8 @@ use std::fs;
 
 use common::programs::{Ran, examples, folder, lasting, run, run_in, unfolded};
 use serde_json::Value;
-use unbiased::workbook::{Options, questions};
+use unbiased::question::Values;
+use unbiased::workbook::questions;
 
 #[test]
 fn bad_input_gets_one_sentence_an_exit_code_and_leaves_nothing_behind() {
@@ -297,7 +298,7 @@ fn too_few_draws_are_not_judged() {
 #[test]
 fn every_example_has_a_hint_that_does_not_tell() {
     for question in questions() {
-        let stated = question.at(&Options::default()).unwrap();
+        let stated = question.at(&Values::default()).unwrap();
         let text = said(question.example, &["--hint"]);
         assert_eq!(text, unfolded(&format!("{} {}", question.id, stated.hint)));
         assert!(!text.contains(&unfolded(&stated.formula)), "{}", question.id);

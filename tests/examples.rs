@@ -10,7 +10,8 @@ use std::sync::OnceLock;
 
 use common::programs::{Ran, examples, lasting, run, run_in};
 use serde_json::Value;
-use unbiased::workbook::{Options, questions};
+use unbiased::question::Values;
+use unbiased::workbook::questions;
 
 const KEYS: [&str; 11] = [
     "question",
@@ -182,7 +183,7 @@ fn the_student_edition_contains_no_answer() {
     let (_, solved) = worksheet();
     for (place, text) in &texts {
         for question in questions() {
-            let stated = question.at(&Options::default()).unwrap();
+            let stated = question.at(&Values::default()).unwrap();
             let wrong = stated.wrong.into_iter().map(|(_, slip)| slip);
             let secrets =
                 [stated.formula, stated.answer].into_iter().chain(stated.on_the_original).chain(wrong);
@@ -317,7 +318,7 @@ fn a_variants_truths_are_those_of_its_estimators() {
         // 4.3 takes seconds for its figures, and its rows take sets of points as draws
         let some = examples().into_iter().filter(|example| !example.starts_with("q4_3"));
         let rows: Vec<Value> = some.flat_map(|example| run(&example, &given).rows()).collect();
-        let options = Options::default().variant(name, questions()).unwrap();
+        let options = Values::default().variant(name, questions()).unwrap();
         let answers: Vec<&Value> = rows.iter().filter(|row| row["kind"] == "answer").collect();
         let mut compared = 0;
         for row in &answers {

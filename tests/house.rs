@@ -2,7 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::iter::Peekable;
 use std::path::{Path, PathBuf};
+use std::str::Chars;
 
 /// A source file, with its path from the crate's folder.
 struct Source {
@@ -52,7 +54,7 @@ impl Source {
 }
 
 /// The floors, bottom up. A module imports from its own floor's row if at all, and from those below.
-const FLOORS: [&[&str]; 13] = [
+const FLOORS: [&[&str]; 14] = [
     &["error", "numbers", "float", "fast", "quantile"],
     &["stream"],
     &["estimate", "doubt"],
@@ -60,6 +62,7 @@ const FLOORS: [&[&str]; 13] = [
     &["placement", "run"],
     &["plot"],
     &["check", "trade"],
+    &["question"],
     &["inversion", "rectangle", "lambertian", "roulette"],
     &["paths"],
     &["mistakes", "figures"],
@@ -69,6 +72,11 @@ const FLOORS: [&[&str]; 13] = [
 ];
 
 const TOPICS: [&str; 5] = ["inversion", "rectangle", "lambertian", "paths", "roulette"];
+
+/// What the crate's root gives again belongs to no floor.
+fn has_floor(named: &[String]) -> bool {
+    FLOORS.iter().any(|floor| floor.contains(&&*named[0]))
+}
 
 /// What lies above its topic: mistakes, figures and questions are met by the rest of a topic in no `use`.
 fn floor(modules: &[&str]) -> usize {
@@ -85,34 +93,65 @@ fn floor(modules: &[&str]) -> usize {
 }
 
 impl Source {
-    /// The paths behind each `crate::` outside of comments and tests, those in braces one by one. What the
-    /// crate's root gives again belongs to no floor and is left out.
+    /// The paths behind each `crate::` and `super::` outside of comments and tests, those in braces one by
+    /// one and all from the crate's root on. What a module only gives again is no import of its own.
     fn imports(&self) -> Vec<Vec<String>> {
-        let code = self.lines().filter(|(_, line)| !line.trim_start().starts_with("//"));
-        let code: Vec<&str> = code.map(|(_, line)| line).collect();
+        let is_code = |line: &str| !line.trim_start().starts_with("//") && !line.starts_with("pub use ");
+        let code: Vec<&str> = self.lines().map(|(_, line)| line).filter(|line| is_code(line)).collect();
+        let code = code.join("\n");
+        let own: Vec<String> = self.modules().into_iter().map(str::to_owned).collect();
         let mut paths = Vec::new();
-        for rest in code.join("\n").split("crate::").skip(1) {
-            let mut depth = 0;
-            let mut path = String::new();
-            for c in rest.chars() {
-                match c {
-                    '{' => depth += 1,
-                    '}' => depth -= 1,
-                    _ => {}
-                }
-                let within = c.is_alphanumeric() || "_:".contains(c);
-                match depth {
-                    0 if c != '}' && !within => break,
-                    // further braces hold what lies in one module
-                    1 if c == ',' => paths.push(std::mem::take(&mut path)),
-                    0 | 1 if within => path.push(c),
-                    _ => {}
+        for (at, _) in code.match_indices("crate::").chain(code.match_indices("super::")) {
+            // not the second `super::` of a path
+            if !code[..at].ends_with(|c: char| c == ':' || c.is_alphanumeric()) {
+                expand(Vec::new(), &mut code[at..].chars().peekable(), &mut paths);
+            }
+        }
+        let from_root = |path: Vec<String>| {
+            let up = path.iter().take_while(|part| *part == "super").count();
+            let base = if up == 0 { &[] } else { &own[..own.len().saturating_sub(up)] };
+            base.iter().cloned().chain(path.into_iter().skip(up.max(1))).collect()
+        };
+        let mut paths: Vec<Vec<String>> = paths.into_iter().map(from_root).collect();
+        // what is taken from an imported module where it is used: `use crate::fast;` and `fast::ln(x)`
+        for module in paths.clone().iter().filter(|path| !path.is_empty()) {
+            let (name, above) = module.split_last().unwrap();
+            for (at, _) in code.match_indices(&format!("{name}::")) {
+                if !code[..at].ends_with(|c: char| c == ':' || c == '_' || c.is_alphanumeric()) {
+                    expand(above.to_vec(), &mut code[at..].chars().peekable(), &mut paths);
                 }
             }
-            paths.push(path);
         }
-        let named = paths.into_iter().map(|path| path.split("::").map(str::to_owned).collect());
-        named.filter(|named: &Vec<String>| FLOORS.iter().any(|floor| floor.contains(&&*named[0]))).collect()
+        paths.retain(|path| !path.is_empty());
+        paths
+    }
+}
+
+/// The paths that begin here: `a::{b, c::{d, e}}` has `a::b`, `a::c::d` and `a::c::e`.
+fn expand(mut path: Vec<String>, text: &mut Peekable<Chars<'_>>, paths: &mut Vec<Vec<String>>) {
+    loop {
+        while text.next_if(|c| c.is_whitespace()).is_some() {}
+        let mut part = String::new();
+        while let Some(c) = text.next_if(|c| c.is_alphanumeric() || *c == '_') {
+            part.push(c);
+        }
+        if !part.is_empty() && part != "self" {
+            path.push(part);
+        }
+        if text.next_if_eq(&':').is_some() {
+            text.next();
+        } else if text.next_if_eq(&'{').is_some() {
+            loop {
+                expand(path.clone(), text, paths);
+                // what follows `as`
+                while text.next_if(|c| !",{};".contains(*c) && *c != '}').is_some() {}
+                if text.next() != Some(',') {
+                    return;
+                }
+            }
+        } else {
+            return paths.push(path);
+        }
     }
 }
 
@@ -122,16 +161,62 @@ fn nothing_imports_from_a_floor_above() {
     for source in sources("src") {
         let modules = source.modules();
         let Some(first) = modules.first() else { continue };
-        for named in source.imports().into_iter().filter(|named| named[0] != *first) {
+        for named in source.imports().into_iter().filter(|named| named[0] != *first && has_floor(named)) {
             let named: Vec<&str> = named.iter().map(String::as_str).collect();
-            // questions are written in the workbook's own types, which know no question
-            let written_in = floor(&modules) == floor(&["paths", "questions"]) && named[0] == "workbook";
-            if floor(&named) > floor(&modules) && !written_in {
+            if floor(&named) > floor(&modules) {
                 broken.push(format!("{} imports crate::{}, of a floor above", source.path, named.join("::")));
             }
         }
     }
     assert!(broken.is_empty(), "{}\nMove what is shared to the lower floor; see FLOORS.", broken.join("\n"));
+}
+
+/// Files that import from each other, on whatever way, have one subject or a third file between them. A
+/// folder's `mod.rs` and what lies in the folder may name each other.
+#[test]
+fn no_files_import_in_a_circle() {
+    let sources = sources("src");
+    let all: BTreeMap<String, &Source> =
+        sources.iter().map(|source| (source.modules().join("::"), source)).collect();
+    let mut imports = BTreeMap::<String, BTreeSet<String>>::new();
+    for (module, source) in &all {
+        let named = source.imports().into_iter().map(|path| home(&all, String::new(), &path));
+        let apart = |other: &String| !within(other, module) && !within(module, other);
+        imports.insert(module.clone(), named.filter(apart).collect());
+    }
+    // what imports nothing that is left is in no circle, nor is what nothing left imports
+    loop {
+        let left: BTreeSet<String> = imports.keys().cloned().collect();
+        let imported: BTreeSet<String> = imports.values().flatten().cloned().collect();
+        imports.values_mut().for_each(|named| named.retain(|other| left.contains(other)));
+        imports.retain(|module, named| !named.is_empty() && imported.contains(module));
+        if imports.len() == left.len() {
+            break;
+        }
+    }
+    assert!(imports.is_empty(), "{imports:#?}\nMove what both need to a file of its own, or join the files.");
+}
+
+/// Whether a module is another or lies in its folder.
+fn within(module: &str, other: &str) -> bool {
+    module == other
+        || module.strip_prefix(other).is_some_and(|rest| rest.starts_with("::") || other.is_empty())
+}
+
+/// The module whose file has what a path from this module on names.
+fn home(all: &BTreeMap<String, &Source>, module: String, path: &[String]) -> String {
+    let below = |name: &str| if module.is_empty() { name.to_owned() } else { format!("{module}::{name}") };
+    let Some((first, rest)) = path.split_first() else { return module };
+    if all.contains_key(&below(first)) {
+        return home(all, below(first), rest);
+    }
+    let text = &all[&module].text.replace("pub(crate) use ", "pub use ");
+    let children = all.keys().filter_map(|other| other.strip_prefix(&below("")));
+    let mut children = children.filter(|child| !child.contains("::"));
+    match children.find(|child| taken_from(text, child).contains(first)) {
+        Some(child) => home(all, below(child), path),
+        None => module,
+    }
 }
 
 #[test]

@@ -53,7 +53,7 @@ fn the_notebooks_have_their_parts() {
         }
         // the questions in the workbook's words, its answers in its formulas, the way to the worked answers
         for question in workbook::questions().filter(|question| question.id.starts_with(notebook.section)) {
-            let (id, stated) = (question.id, question.at(&workbook::Options::default()).unwrap());
+            let (id, stated) = (question.id, question.at(&unbiased::question::Values::default()).unwrap());
             let title = format!("\n## {id} {}\n", stated.title);
             for said in [Some(&title), Some(&stated.statement), stated.on_the_original.as_ref()] {
                 assert!(said.is_none_or(|said| plain(&prose).contains(&plain(said))), "{id}: no “{said:?}”");
@@ -178,7 +178,7 @@ fn every_number_in_prose_is_produced_by_a_cell() {
         }
         let questions: Vec<_> = workbook::questions().collect();
         for question in &questions {
-            let stated = question.at(&workbook::Options::default()).unwrap();
+            let stated = question.at(&unbiased::question::Values::default()).unwrap();
             known += &[stated.statement, stated.on_the_original.unwrap_or_default()].concat();
             known += &stated.latex.concat();
         }

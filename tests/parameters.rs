@@ -5,7 +5,8 @@
 
 use std::collections::BTreeSet;
 
-use unbiased::workbook::{Options, Parameter, Question, Stated, Value, question, questions};
+use unbiased::question::{Parameter, Question, Stated, Value, Values};
+use unbiased::workbook::{question, questions};
 
 fn texts(stated: &Stated) -> Vec<String> {
     let Stated { title, statement, hint, formula, latex, answer, wrong, on_the_original } = stated.clone();
@@ -17,7 +18,7 @@ fn texts(stated: &Stated) -> Vec<String> {
 }
 
 fn at(question: &'static Question, given: &[(&str, f64)]) -> Stated {
-    let mut options = Options::default();
+    let mut options = Values::default();
     for (name, value) in given {
         options.set(question, name, &value.to_string()).unwrap();
     }
@@ -97,7 +98,7 @@ fn templates_hold_no_defaults() {
             }
         }
         for number in question.numbers {
-            for truth in question.evaluate(number.formula, &Options::default()).unwrap() {
+            for truth in question.evaluate(number.formula, &Values::default()).unwrap() {
                 own.insert(format!("{truth:.6}").trim_end_matches('0').trim_end_matches('.').to_owned());
             }
         }
@@ -133,7 +134,7 @@ fn closed_forms_have_the_values_of_their_parameters() {
         assert!(formula.contains(part), "{formula}");
     }
     // light along the horizon: 0.99 ε²/(4/3 ε³ − ε⁴) at ε = 0.1
-    let why = question("3.6").unwrap().at(&Options::default()).unwrap().answer;
+    let why = question("3.6").unwrap().at(&Values::default()).unwrap().answer;
     assert!(why.contains("and 8.027027 times uniform's at ε = 0.1"), "{why}");
 }
 
@@ -150,7 +151,7 @@ fn a_parameter_outside_its_domain_names_the_question() {
         ("5.1", "p-rr", "0"),
     ] {
         let question = question(id).unwrap();
-        let mut options = Options::default();
+        let mut options = Values::default();
         options.set(question, name, value).unwrap();
         let error = question.at(&options).unwrap_err().to_string();
         assert!(error.starts_with(&format!("question {id}: the ")), "{error}");

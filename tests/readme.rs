@@ -8,7 +8,8 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use unbiased::workbook::{Options, exercise, questions};
+use unbiased::question::Values;
+use unbiased::workbook::{exercise, questions};
 
 const README: &str = include_str!("../README.md");
 
@@ -38,7 +39,7 @@ fn links_lead_somewhere() {
 fn the_table_is_that_of_the_questions_and_has_every_figure() {
     let mut linked = BTreeSet::new();
     for question in questions() {
-        let title = question.at(&Options::default()).unwrap().title;
+        let title = question.at(&Values::default()).unwrap().title;
         let row = format!("| {} {title} |", question.id);
         let row = README.lines().find(|line| line.starts_with(&row)).unwrap_or_else(|| panic!("{row}"));
         let [example, topic, figures @ ..] = &links(row).collect::<Vec<_>>()[..] else { panic!("{row}") };

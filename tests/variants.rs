@@ -4,10 +4,11 @@
 
 use std::collections::BTreeSet;
 
-use unbiased::workbook::{Options, question, questions};
+use unbiased::question::Values;
+use unbiased::workbook::{question, questions};
 
-fn variant(name: &str) -> Options {
-    Options::default().variant(name, questions()).unwrap()
+fn variant(name: &str) -> Values {
+    Values::default().variant(name, questions()).unwrap()
 }
 
 /// Every wrong answer is 5 % off the right one, every classic one 5 % off the others, no parameter hides a
@@ -73,12 +74,12 @@ const GOLDEN: [(&str, f64, f64); 3] = [("Ada", 0.9, 0.7), ("42", 0.85, 0.2), ("Å
 #[test]
 fn what_is_given_stands_above_the_variant_and_a_name_is_needed() {
     let question = question("5.2").unwrap();
-    let mut options = Options::default();
+    let mut options = Values::default();
     options.set(question, "p-rr", "0.55").unwrap();
     let options = options.variant("Ada", questions()).unwrap();
     assert_eq!(question.evaluate("p_rr", &options).unwrap(), [0.55]);
     for name in ["", "  "] {
-        let error = Options::default().variant(name, questions()).unwrap_err().to_string();
+        let error = Values::default().variant(name, questions()).unwrap_err().to_string();
         assert_eq!(error, "a variant needs a name: any text or number");
     }
 }

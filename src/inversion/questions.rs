@@ -1,8 +1,8 @@
 //! The questions of section 1, the inversion method.
 
 use crate::inversion::Exponential;
-use crate::workbook::{Letter, Number, Parameter, Question, Slip, Value, Wrong};
-use crate::workbook::{classic, slip};
+use crate::question::{Letter, Number, Parameter, Question, Slip, Value, Wrong};
+use crate::question::{classic, slip};
 
 const RATE: Parameter = Parameter {
     name: "rate",
@@ -11,15 +11,15 @@ const RATE: Parameter = Parameter {
     variants: &[0.2, 0.25, 0.3, 0.4, 0.6, 0.75, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0],
     letter: Some(Letter {
         names: &["λ", "lambda"],
-        value: |options| Exponential::new(options.number("rate")).map(|exponential| exponential.rate()),
+        value: |values| Exponential::new(values.number("rate")).map(|exponential| exponential.rate()),
         generic: 0.37,
     }),
 };
 const U: Letter = Letter {
     names: &["u", "U"],
-    value: |options| {
-        let u = options.number("u");
-        Exponential::new(options.number("rate"))?.inverse_cdf(u).map(|_| u)
+    value: |values| {
+        let u = values.number("u");
+        Exponential::new(values.number("rate"))?.inverse_cdf(u).map(|_| u)
     },
     generic: 0.7313,
 };

@@ -2,8 +2,8 @@
 
 use crate::error::require;
 use crate::lambertian::{CosinePower, Lambertian, RingLight};
-use crate::workbook::{Letter, Number, Parameter, Question, Value, Wrong};
-use crate::workbook::{classic, slip};
+use crate::question::{Letter, Number, Parameter, Question, Value, Wrong};
+use crate::question::{classic, slip};
 
 const ALBEDO: Parameter = Parameter {
     name: "albedo",
@@ -12,7 +12,7 @@ const ALBEDO: Parameter = Parameter {
     variants: &[0.3, 0.35, 0.4, 0.45, 0.55, 0.6, 0.65, 0.7, 0.75, 0.85, 0.9],
     letter: Some(Letter {
         names: &["ρ", "rho"],
-        value: |options| Lambertian::new(options.number("albedo")).map(Lambertian::albedo),
+        value: |values| Lambertian::new(values.number("albedo")).map(Lambertian::albedo),
         generic: 0.61,
     }),
 };
@@ -25,8 +25,8 @@ const RADIANCE: Parameter = Parameter {
 };
 const L_I: Letter = Letter {
     names: &["L_i", "Li", "L"],
-    value: |options| {
-        let radiance = options.number("radiance");
+    value: |values| {
+        let radiance = values.number("radiance");
         require("the radiance", radiance, radiance.is_finite(), "finite")
     },
     generic: 1.7,
@@ -38,7 +38,7 @@ const A: Parameter = Parameter {
     variants: &[0.5, 1.5, 2.0, 2.5, 3.0, 4.0],
     letter: Some(Letter {
         names: &["a"],
-        value: |options| CosinePower::new(options.number("a")).map(|sky| sky.a()),
+        value: |values| CosinePower::new(values.number("a")).map(|sky| sky.a()),
         generic: 0.43,
     }),
 };
@@ -310,7 +310,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
                 variants: &[0.05, 0.15, 0.2, 0.25, 0.3, 0.4],
                 letter: Some(Letter {
                     names: &["ε", "epsilon"],
-                    value: |options| RingLight::new(options.number("width")).map(|ring| ring.width()),
+                    value: |values| RingLight::new(values.number("width")).map(|ring| ring.width()),
                     generic: 0.17,
                 }),
             },

@@ -2,11 +2,27 @@
 
 use crate::error::Result;
 use crate::paths::room::{BoxRoom, Scene};
-use crate::workbook::{Letter, Options, Parameter, Question, Value, Wrong};
+use crate::question::{Letter, Parameter, Question, Value, Values, Wrong};
+
+/// The scene that these values describe.
+pub(crate) fn scene(values: &Values) -> Scene {
+    let point = match values.value("point") {
+        Some(Value::Point(point)) => point,
+        _ => [f64::NAN; 3],
+    };
+    Scene {
+        wall_albedo: values.number("wall-albedo"),
+        cube_albedo: values.number("cube-albedo"),
+        radiance: values.number("radiance"),
+        light_half_width: values.number("light-half-width"),
+        point,
+        ..Scene::default()
+    }
+}
 
 /// The room, if all of its numbers are in their domains.
-fn room(options: &Options) -> Result<Scene> {
-    BoxRoom::new(options.scene()).map(|room| *room.scene())
+fn room(values: &Values) -> Result<Scene> {
+    BoxRoom::new(scene(values)).map(|room| *room.scene())
 }
 
 const WALL_ALBEDO: Parameter = Parameter {
@@ -16,7 +32,7 @@ const WALL_ALBEDO: Parameter = Parameter {
     variants: &[0.3, 0.35, 0.4, 0.45, 0.55, 0.6, 0.65, 0.7],
     letter: Some(Letter {
         names: &["ρ_wall"],
-        value: |options| room(options).map(|scene| scene.wall_albedo),
+        value: |values| room(values).map(|scene| scene.wall_albedo),
         generic: 0.61,
     }),
 };
@@ -27,7 +43,7 @@ const CUBE_ALBEDO: Parameter = Parameter {
     variants: &[0.25, 0.55, 0.6, 0.65, 0.75, 0.85, 0.9],
     letter: Some(Letter {
         names: &["ρ_cube"],
-        value: |options| room(options).map(|scene| scene.cube_albedo),
+        value: |values| room(values).map(|scene| scene.cube_albedo),
         generic: 0.37,
     }),
 };
@@ -38,7 +54,7 @@ const RADIANCE: Parameter = Parameter {
     variants: &[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 12.0, 15.0, 20.0],
     letter: Some(Letter {
         names: &["L_e"],
-        value: |options| room(options).map(|scene| scene.radiance),
+        value: |values| room(values).map(|scene| scene.radiance),
         generic: 7.0,
     }),
 };
@@ -49,7 +65,7 @@ const LIGHT_HALF_WIDTH: Parameter = Parameter {
     variants: &[0.3, 0.4, 0.6, 0.7, 0.75, 0.9],
     letter: Some(Letter {
         names: &["s"],
-        value: |options| room(options).map(|scene| scene.light_half_width),
+        value: |values| room(values).map(|scene| scene.light_half_width),
         generic: 0.83,
     }),
 };

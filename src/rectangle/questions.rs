@@ -1,9 +1,9 @@
 //! The questions of section 2, unbiased estimators.
 
 use crate::error::Result;
+use crate::question::{Letter, Number, Parameter, Question, Value, Values, Wrong};
+use crate::question::{classic, slip};
 use crate::rectangle::Rectangle;
-use crate::workbook::{Letter, Number, Options, Parameter, Question, Value, Wrong};
-use crate::workbook::{classic, slip};
 
 const fn end(
     name: &'static str,
@@ -18,27 +18,27 @@ const fn end(
 const LOW_ENDS: &[f64] = &[-4.0, -3.0, -2.5, -1.5, -1.0, -0.5, 0.5, 1.0, 1.5];
 const HIGH_ENDS: &[f64] = &[2.0, 2.5, 3.0, 3.5, 4.5, 5.0, 6.0, 7.0];
 
-fn ends(options: &Options) -> Result<[[f64; 2]; 2]> {
-    let [x, y] = [["x-low", "x-high"], ["y-low", "y-high"]].map(|ends| ends.map(|end| options.number(end)));
+fn ends(values: &Values) -> Result<[[f64; 2]; 2]> {
+    let [x, y] = [["x-low", "x-high"], ["y-low", "y-high"]].map(|ends| ends.map(|end| values.number(end)));
     Rectangle::new(x, y).map(|_| [x, y])
 }
 
-fn sides(options: &Options) -> Result<[f64; 2]> {
-    ends(options).map(|ends| ends.map(|[low, high]| high - low))
+fn sides(values: &Values) -> Result<[f64; 2]> {
+    ends(values).map(|ends| ends.map(|[low, high]| high - low))
 }
 
 const W: Letter =
-    Letter { names: &["w"], value: |options| sides(options).map(|[width, _]| width), generic: 1.7 };
+    Letter { names: &["w"], value: |values| sides(values).map(|[width, _]| width), generic: 1.7 };
 const H: Letter =
-    Letter { names: &["h"], value: |options| sides(options).map(|[_, height]| height), generic: 4.1 };
+    Letter { names: &["h"], value: |values| sides(values).map(|[_, height]| height), generic: 4.1 };
 const X_LOW: Letter =
-    Letter { names: &["x_low"], value: |options| ends(options).map(|[[low, _], _]| low), generic: 0.3 };
+    Letter { names: &["x_low"], value: |values| ends(values).map(|[[low, _], _]| low), generic: 0.3 };
 const X_HIGH: Letter =
-    Letter { names: &["x_high"], value: |options| ends(options).map(|[[_, high], _]| high), generic: 2.0 };
+    Letter { names: &["x_high"], value: |values| ends(values).map(|[[_, high], _]| high), generic: 2.0 };
 const Y_LOW: Letter =
-    Letter { names: &["y_low"], value: |options| ends(options).map(|[_, [low, _]]| low), generic: -1.1 };
+    Letter { names: &["y_low"], value: |values| ends(values).map(|[_, [low, _]]| low), generic: -1.1 };
 const Y_HIGH: Letter =
-    Letter { names: &["y_high"], value: |options| ends(options).map(|[_, [_, high]]| high), generic: 3.0 };
+    Letter { names: &["y_high"], value: |values| ends(values).map(|[_, [_, high]]| high), generic: 3.0 };
 
 pub(crate) const QUESTIONS: &[Question] = &[Question {
     id: "2.1",

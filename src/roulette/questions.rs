@@ -1,8 +1,8 @@
 //! The questions of section 5, Russian roulette.
 
+use crate::question::{Letter, Number, Parameter, Question, Value, Wrong};
+use crate::question::{classic, slip};
 use crate::roulette::{LightModel, Roulette};
-use crate::workbook::{Letter, Number, Parameter, Question, Value, Wrong};
-use crate::workbook::{classic, slip};
 
 const ALBEDO: Parameter = Parameter {
     name: "albedo",
@@ -11,7 +11,7 @@ const ALBEDO: Parameter = Parameter {
     variants: &[0.3, 0.35, 0.4, 0.45, 0.55, 0.6, 0.65, 0.7, 0.75, 0.85, 0.9],
     letter: Some(Letter {
         names: &["ρ", "rho"],
-        value: |options| LightModel::new(options.number("albedo"), 1.0).map(|model| model.albedo()),
+        value: |values| LightModel::new(values.number("albedo"), 1.0).map(|model| model.albedo()),
         generic: 0.61,
     }),
 };
@@ -22,7 +22,7 @@ const VISIBILITY: Parameter = Parameter {
     variants: &[0.2, 0.25, 0.3, 0.4, 0.6, 0.7, 0.75],
     letter: Some(Letter {
         names: &["v"],
-        value: |options| LightModel::new(0.0, options.number("visibility")).map(|model| model.visibility()),
+        value: |values| LightModel::new(0.0, values.number("visibility")).map(|model| model.visibility()),
         generic: 0.37,
     }),
 };
@@ -33,7 +33,7 @@ const P_RR: Parameter = Parameter {
     variants: &[0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9],
     letter: Some(Letter {
         names: &["p_rr", "prr", "p", "q"],
-        value: |options| Roulette::new(options.number("p-rr")).map(|roulette| roulette.p_rr()),
+        value: |values| Roulette::new(values.number("p-rr")).map(|roulette| roulette.p_rr()),
         generic: 0.83,
     }),
 };

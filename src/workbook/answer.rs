@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use super::Value;
 use crate::doubt::Doubt;
 use crate::estimate::Estimate;
 use crate::plot::{Edition, Figure};
+use crate::question::Value;
 use crate::run::{Cost, Outcome};
 use crate::trade::Measured;
 

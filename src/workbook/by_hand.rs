@@ -1,55 +1,11 @@
-//! Numbers worked out by hand: the answers that questions ask for, and known wrong answers with the slip
-//! behind each.
-//!
-//! Every answer, right or wrong, is stored as the formula that people read. Its value is computed from that
-//! formula, at the question's parameters.
+//! Judges numbers worked out by hand: right, a known wrong answer with the slip behind it, or neither.
 
 use std::fmt;
 
-use super::grammar::{self, Known, Token};
-use super::{Options, Question, questions};
+use super::questions;
 use crate::error::{Error, Result};
-use crate::numbers::{rounded, shortened};
-
-/// A number that a question asks for.
-#[derive(Debug, Clone, Copy)]
-pub struct Number {
-    /// The part of the question that asks for it, "(ii)"; empty if the question asks for one number only.
-    pub part: &'static str,
-    /// Its symbol.
-    pub symbol: &'static str,
-    /// A description in words.
-    pub what: &'static str,
-    /// The right answer for all parameters: a formula in the letters, or several with " or " between them.
-    pub formula: &'static str,
-    /// If it is the factor c of an estimator c/n Σ …, that estimator; then c/n is accepted, too.
-    pub over_n: Option<&'static str>,
-    /// The wrong answers.
-    pub slips: &'static [Slip],
-}
-
-/// A wrong answer that is a number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Slip {
-    /// Its name for programs, unique among the wrong answers to the question.
-    pub id: &'static str,
-    /// The wrong answer for all parameters: a formula, or several with " or " between them.
-    pub answer: &'static str,
-    /// The slip that leads to it.
-    pub words: &'static str,
-    /// Whether it is also listed with the solution.
-    pub classic: bool,
-}
-
-/// A wrong answer that is only used to judge answers.
-pub(crate) const fn slip(id: &'static str, answer: &'static str, words: &'static str) -> Slip {
-    Slip { id, answer, words, classic: false }
-}
-
-/// A wrong answer that is also listed with the solution.
-pub(crate) const fn classic(id: &'static str, answer: &'static str, words: &'static str) -> Slip {
-    Slip { id, answer, words, classic: true }
-}
+use crate::question::grammar::{self, Known, Token};
+use crate::question::{Number, Question, SAME, Slip, Values, same};
 
 /// The judgement of an answer worked out by hand.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,21 +45,21 @@ pub enum Judgement {
 /// # Errors
 /// If the question asks for no number, or for several and the part is missing, or the text is not understood.
 pub fn judge_answer(question: &str, text: &str) -> Result<Judgement> {
-    judged(question, text, &Options::default(), None).map(|(judgement, _)| judgement)
+    judged(question, text, &Values::default(), None).map(|(judgement, _)| judgement)
 }
 
-/// The same at the parameters in `options`, with the ratio to the right answer, if there is one. With
+/// The same at these parameters, with the ratio to the right answer, if there is one. With
 /// `digits`, at least that many significant digits are required, unless the answer is exact.
 ///
 /// It is an error, too, if a parameter is outside its domain or the right answer is infinite.
 pub(super) fn judged(
     question: &str,
     text: &str,
-    options: &Options,
+    values: &Values,
     digits: Option<u32>,
 ) -> Result<(Judgement, Option<f64>)> {
     let (question, number) = asked(question)?;
-    let answer = Answered::new(question, number, text, &options.for_question(question))?;
+    let answer = Answered::new(question, number, text, &values.for_question(question))?;
     let (given, letters) = answer.with_letters(1.0)?;
     let truths = question.with_letters(number.formula, &letters)?;
     if !truths.iter().all(|truth| truth.is_finite()) {
@@ -146,13 +102,6 @@ pub(super) fn judged(
     Ok((judgement, ratio))
 }
 
-/// Numbers closer than this, relatively, are equal up to rounding.
-const SAME: f64 = 1e-9;
-
-fn same(a: f64, b: f64) -> bool {
-    a == b || (a - b).abs() <= SAME * a.abs().max(b.abs())
-}
-
 /// The distance from the nearest of these values to the numbers that `given` may stand for.
 fn nearest(given: &Known, values: &[f64]) -> Option<f64> {
     let off = values.iter().filter_map(|value| {
@@ -193,29 +142,6 @@ pub(super) fn asked(question: &str) -> Result<(&'static Question, &'static Numbe
     }))
 }
 
-impl Number {
-    /// A description of what is asked for: "the factor c in c/n Σ L_i".
-    pub fn asked(&self) -> String {
-        self.over_n.map_or(self.what.into(), |sum| format!("{} in {sum}", self.what))
-    }
-}
-
-impl Question {
-    /// The values of a formula in its letters, or of several with " or " between them, at the parameters in
-    /// `options`.
-    ///
-    /// # Errors
-    /// If a parameter is outside its domain, or the formula cannot be read.
-    pub fn evaluate(&'static self, formula: &str, options: &Options) -> Result<Vec<f64>> {
-        let options = options.for_question(self);
-        self.with_letters(formula, &self.values(&options)?)
-    }
-
-    fn with_letters(&self, formula: &str, letters: &[f64]) -> Result<Vec<f64>> {
-        formula.split(" or ").map(|formula| self.value(formula, letters)).collect()
-    }
-}
-
 /// A parsed answer.
 struct Answered<'a> {
     question: &'static Question,
@@ -231,10 +157,10 @@ impl<'a> Answered<'a> {
         question: &'static Question,
         number: &'static Number,
         text: &'a str,
-        options: &Options,
+        values: &Values,
     ) -> Result<Self> {
-        let letters = question.values(options)?;
-        let parameters = question.parameters.iter().map(|parameter| options.number(parameter.name).abs());
+        let letters = question.letter_values(values)?;
+        let parameters = question.parameters.iter().map(|parameter| values.number(parameter.name).abs());
         let exact: Vec<f64> = parameters.chain(letters.iter().copied()).collect();
         let mut spellings: Vec<_> = question.letters().map(|letter| letter.names).collect();
         spellings.extend(number.over_n.map(|_| N));
@@ -321,43 +247,5 @@ impl fmt::Display for Judgement {
             }
             Self::Unknown { ratio: None } => f.write_str("not right, and none of the known slips"),
         }
-    }
-}
-
-impl Question {
-    /// Its classic wrong answers, each with its slip. Those that are numbers have their values at the
-    /// question's parameters, and are left out if they are right there.
-    pub(super) fn classic_wrong_answers(
-        &'static self,
-        options: &Options,
-    ) -> Result<Vec<(String, &'static str)>> {
-        let mut all = Vec::new();
-        for number in self.numbers {
-            let truths = self.evaluate(number.formula, options)?;
-            for slip in number.slips.iter().filter(|slip| slip.classic) {
-                let mut values = self.evaluate(slip.answer, options)?;
-                if !values.iter().any(|value| truths.iter().any(|truth| same(*value, *truth))) {
-                    values.dedup_by(|a, b| same(*a, *b));
-                    all.push((number.equation(slip.answer, &values), slip.words));
-                }
-            }
-        }
-        all.extend(self.wrong.iter().map(|wrong| (wrong.answer.into(), wrong.slip)));
-        Ok(all)
-    }
-}
-
-impl Number {
-    /// `E[N] = 1/(1 − p_rr) = 5`
-    fn equation(&self, formula: &str, values: &[f64]) -> String {
-        let values = values
-            .iter()
-            .filter(|value| value.is_finite())
-            .map(|value| shortened(rounded(*value, 4).parse().unwrap_or(*value)).replace('-', "−"));
-        let values = values.collect::<Vec<_>>().join(" or ");
-        let value =
-            if values.is_empty() || values == formula { String::new() } else { format!(" = {values}") };
-        let place = self.over_n.map_or(String::new(), |sum| format!(" in {sum}"));
-        format!("{} = {formula}{value}{place}", self.symbol)
     }
 }

@@ -8,12 +8,12 @@ use std::time::Duration;
 
 use lexopt::{Arg, Parser};
 
-use super::options::{Given, parameter};
 use super::shards::Shards;
-use super::{Answer, Appendix, Options, Question, help};
+use super::{Answer, Appendix, Options, help};
 use crate::error::{Error, Result};
 use crate::numbers::parseable;
 use crate::plot::Edition;
+use crate::question::{Given, Question, parameter};
 use crate::run::Budget;
 
 /// Reads this program's command line, for the example of these questions, or of an appendix. `--help` and
@@ -57,7 +57,7 @@ pub(super) fn read(questions: &[&'static Question], appendix: Option<&Appendix>)
                 let parameter = parameter(asked(), own, &name)?;
                 let value = parameter.read(&text(&mut line, &format!("--{name}"))?)?;
                 let of = id.and_then(|_| asked().next()).map(|question| question.id);
-                options.given.push(Given { of, name: parameter.name, value });
+                options.values.give(Given { of, name: parameter.name, value });
             }
         }
     }
@@ -65,7 +65,7 @@ pub(super) fn read(questions: &[&'static Question], appendix: Option<&Appendix>)
         return refused("--variants works with the example worksheet only");
     }
     if let Some(name) = variant {
-        options = options.variant(&name, questions.iter().copied())?;
+        options.values = options.values.variant(&name, questions.iter().copied())?;
     }
     let (cut, merged) = (options.shard.is_some(), options.shards.is_some());
     if hint {
@@ -166,7 +166,7 @@ pub(super) fn repeating(
     options: &Options,
 ) -> (String, Option<&'static str>) {
     let mut command = format!("cargo run --release --example {} --", question.example);
-    for (parameter, value) in options.parameters() {
+    for (parameter, value) in options.values.parameters() {
         command += &format!(" --{} {value}", parameter.name);
     }
     let outcomes = answers.iter().filter_map(|answer| answer.outcome.as_ref());

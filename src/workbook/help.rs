@@ -2,13 +2,14 @@
 
 use super::print::put;
 use super::terminal::{folded, labelled, width};
-use super::{Appendix, Options, Question};
+use super::{Appendix, Options};
 use crate::error::Result;
+use crate::question::{Question, Values};
 
 /// `--hint`
 pub(super) fn hints(questions: &[&'static Question], options: &Options) -> Result<()> {
     let hint = |question: &&'static Question| {
-        Ok(labelled(&format!("{}  ", question.id), &question.at(options)?.hint, width()))
+        Ok(labelled(&format!("{}  ", question.id), &question.at(&options.values)?.hint, width()))
     };
     put(&questions.iter().map(hint).collect::<Result<String>>()?)
 }
@@ -46,7 +47,7 @@ pub(super) fn of_appendix(appendix: &Appendix) -> Result<()> {
 pub(super) fn of_questions(questions: &[&'static Question]) -> Result<()> {
     let mut text = String::new();
     if let [question] = questions {
-        let stated = question.at(&Options::default())?;
+        let stated = question.at(&Values::default())?;
         text += &format!("{}  {}\n\n{}\n\n", question.id, stated.title, stated.statement);
     } else {
         text += "The worksheet: every question answered in closed form, by an estimator with its error bar, \

@@ -24,17 +24,14 @@ mod by_hand;
 mod check;
 mod command_line;
 pub mod extremes;
-mod grammar;
 mod help;
 mod options;
 mod page;
 mod print;
 mod progress;
-mod question;
 mod shards;
 mod sheet;
 mod terminal;
-mod value;
 mod variant;
 mod worksheet;
 
@@ -42,20 +39,18 @@ use std::process::ExitCode;
 
 pub use answer::Answer;
 pub use appendix::{Appendix, Contents, Table};
-pub use by_hand::{Judgement, Number, Slip, judge_answer};
-pub(crate) use by_hand::{classic, slip};
+pub use by_hand::{Judgement, judge_answer};
 #[cfg(feature = "notebook")]
 pub(crate) use check::told_once;
 pub use check::{check_mine, exercise, mistakes};
 pub use options::Options;
 #[cfg(feature = "notebook")]
 pub(crate) use print::interval;
-pub use question::{Letter, Parameter, Question, Stated, Wrong};
 pub use sheet::{Row, Sheet};
-pub use value::Value;
 pub use worksheet::Worksheet;
 
 use crate::error::{Error, Result};
+use crate::question::Question;
 use crate::{inversion, lambertian, paths, rectangle, roulette};
 
 /// All questions, in the worksheet's order.
@@ -90,7 +85,7 @@ pub fn main(id: &str, answer: AnswerFn) -> ExitCode {
         let question = question(id)?;
         let Some(options) = command_line::read(&[question], None)? else { return Ok(()) };
         // a parameter outside its domain is an error before anything is run
-        question.at(&options)?;
+        question.at(&options.values)?;
         // a shard draws no figures
         if options.shard.is_some() {
             return sheet::answered(question, answer, &options).map(|_| ());

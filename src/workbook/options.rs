@@ -6,12 +6,10 @@ use std::time::Duration;
 
 use super::progress::watched;
 use super::shards::Shards;
-use super::{Parameter, Question, Value};
 use crate::error::{Error, Result};
 use crate::estimator::Estimator;
-use crate::numbers::parseable;
-use crate::paths::room::Scene;
 use crate::plot::Edition;
+use crate::question::{Question, Values};
 use crate::run::{Budget, Outcome, Run};
 
 /// The options of an example.
@@ -45,10 +43,8 @@ pub struct Options {
     pub(super) variants: Option<PathBuf>,
     /// The worksheet's title.
     pub(super) title: String,
-    /// Values of parameters; the last one of a name counts.
-    pub(super) given: Vec<Given>,
-    /// The question whose parameters are asked for by name.
-    pub(super) question: Option<&'static Question>,
+    /// The questions' parameters.
+    pub(super) values: Values,
 }
 
 /// What is printed for people while a question is answered.
@@ -80,121 +76,15 @@ impl Default for Options {
             shards: None,
             variants: None,
             title: String::new(),
-            given: Vec::new(),
-            question: None,
+            values: Values::default(),
         }
-    }
-}
-
-/// A question's own option, as given.
-#[derive(Debug, Clone)]
-pub(super) struct Given {
-    /// The question, if the option names it, as `--5.2.p-rr` does; else it is for every question that has it.
-    pub of: Option<&'static str>,
-    pub name: &'static str,
-    pub value: Value,
-}
-
-/// What the option `name` of one of these questions sets.
-pub(super) fn parameter<'q>(
-    questions: impl IntoIterator<Item = &'q Question>,
-    name: &str,
-    option: &str,
-) -> Result<&'static Parameter> {
-    let mut known = questions.into_iter().flat_map(|question| question.parameters);
-    let unknown = || Error::Usage(format!("there is no option --{option}; --help lists them"));
-    known.find(|parameter| parameter.name == name).ok_or_else(unknown)
-}
-
-impl Parameter {
-    /// A value given for it.
-    pub(super) fn read(&self, given: &str) -> Result<Value> {
-        let kind = self.default.kind();
-        let unread = || Error::Usage(format!("--{} takes {kind}, not \"{given}\"", self.name));
-        self.default.read_alike(given).ok_or_else(unread)
     }
 }
 
 impl Options {
-    /// Sets the question's own option `name` to a value as the command line takes it: "0.8", "4/5".
-    ///
-    /// # Errors
-    /// If the question has no such option, or it does not take that.
-    pub fn set(&mut self, question: &Question, name: &str, given: &str) -> Result<()> {
-        let parameter = parameter([question], name, name)?;
-        let value = parameter.read(given)?;
-        self.given.push(Given { of: Some(question.id), name: parameter.name, value });
-        Ok(())
-    }
-
-    /// Adds the questions' own options among `below`, where they are not set here.
-    pub(super) fn put_below(&mut self, mut below: Self) {
-        below.given.append(&mut self.given);
-        self.given = below.given;
-    }
-
-    /// The same options, with the defaults of this question's own parameters.
+    /// The same options, with the values of this question's parameters.
     pub(super) fn for_question(&self, question: &'static Question) -> Self {
-        Self { question: Some(question), ..self.clone() }
-    }
-
-    /// The value of the question's own option `name`: as given, else its default.
-    pub(super) fn value(&self, name: &str) -> Option<Value> {
-        let question = self.question?;
-        let own = |given: &&Given| given.name == name && given.of.is_none_or(|of| of == question.id);
-        let given = self.given.iter().rev().find(own).map(|given| given.value);
-        let default = || question.parameters.iter().find(|parameter| parameter.name == name);
-        given.or_else(|| default().map(|parameter| parameter.default))
-    }
-
-    /// The question's own options, with their values.
-    pub(super) fn parameters(&self) -> impl Iterator<Item = (&'static Parameter, Value)> {
-        let parameters = self.question.map_or(&[][..], |question| question.parameters).iter();
-        parameters.filter_map(|parameter| Some((parameter, self.value(parameter.name)?)))
-    }
-
-    /// The value of the question's own option `name`, a number: as given, else its default. NaN if the
-    /// question has no such option.
-    pub fn number(&self, name: &str) -> f64 {
-        match self.value(name) {
-            Some(Value::Number(number)) => number,
-            _ => f64::NAN,
-        }
-    }
-
-    /// The value of an option that is a count, or `None` for "all". `None`, too, if the question has no such
-    /// option.
-    pub(super) fn limit(&self, name: &str) -> Option<u32> {
-        match self.value(name) {
-            Some(Value::Limit(limit)) => limit,
-            _ => None,
-        }
-    }
-
-    /// The box room that section 4's options describe.
-    pub(crate) fn scene(&self) -> Scene {
-        let point = match self.value("point") {
-            Some(Value::Point(point)) => point,
-            _ => [f64::NAN; 3],
-        };
-        Scene {
-            wall_albedo: self.number("wall-albedo"),
-            cube_albedo: self.number("cube-albedo"),
-            radiance: self.number("radiance"),
-            light_half_width: self.number("light-half-width"),
-            point,
-            ..Scene::default()
-        }
-    }
-
-    /// The value of an option that must be a whole number ≥ 0.
-    pub(crate) fn whole_number(&self, name: &str) -> Result<u64> {
-        let value = self.number(name);
-        if value >= 0.0 && value < u64::MAX as f64 && value.fract() == 0.0 {
-            Ok(value as u64)
-        } else {
-            Err(Error::Usage(format!("--{name} takes a whole number, not {}", parseable(value))))
-        }
+        Self { values: self.values.for_question(question), ..self.clone() }
     }
 
     /// Runs an estimator until the budget in the options is spent, or for `draws` draws if there is none,

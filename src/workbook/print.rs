@@ -10,16 +10,17 @@ use serde_json::{Map, Value};
 use super::answer::Unjudged;
 use super::options::Voice;
 use super::terminal::{command_lines, labelled, stacked, width};
-use super::{Answer, Appendix, Contents, Options, Question, Stated, command_line};
+use super::{Answer, Appendix, Contents, Options, command_line};
 use crate::error::{Error, Result};
 use crate::estimate::Estimate;
 use crate::numbers::{plus_minus, rounded, shortened, std_errors};
 use crate::plot::{Edition, Figure};
+use crate::question::{Question, Stated};
 use crate::run::Part;
 
 /// Prints the question, before its rows are computed.
 pub(super) fn heading(question: &'static Question, options: &Options) -> Result<()> {
-    let stated = question.at(options)?;
+    let stated = question.at(&options.values)?;
     if silent(options) {
         return Ok(());
     }
@@ -31,7 +32,7 @@ pub(super) fn heading(question: &'static Question, options: &Options) -> Result<
     if options.edition == Edition::Solution {
         text += &format!("\n{}", paragraph(&stated.answer));
         text += &format!("\n{}", labelled("    closed form  ", &stated.formula, width()));
-        let changed = options.parameters().filter(|(parameter, value)| *value != parameter.default);
+        let changed = options.values.parameters().filter(|(parameter, value)| *value != parameter.default);
         let own: Vec<_> =
             changed.map(|(parameter, value)| format!("{} = {}", parameter.name, value.shortened())).collect();
         if !own.is_empty() {
@@ -58,7 +59,7 @@ pub(super) fn row(answer: &Answer, options: &Options) -> Result<()> {
 
 /// Saves the figures, and prints what follows the rows. With --json, prints the rows.
 pub(super) fn ending(question: &'static Question, answers: &[Answer], options: &Options) -> Result<()> {
-    let stated = question.at(options)?;
+    let stated = question.at(&options.values)?;
     let student = options.edition == Edition::Student;
     let mut rows = Vec::new();
     for answer in answers.iter().filter(|answer| answer.shown_in(options.edition)) {
@@ -320,8 +321,8 @@ pub(super) fn cut_short(answer: &Answer) -> Option<String> {
 }
 
 /// Whether a row's parameter is the question's own: others cannot be given in the command that repeats it.
-pub(super) fn as_given(name: &str, value: super::Value, options: &Options) -> bool {
-    options.value(&name.replace('_', "-")) == Some(value)
+pub(super) fn as_given(name: &str, value: crate::question::Value, options: &Options) -> bool {
+    options.values.value(&name.replace('_', "-")) == Some(value)
 }
 
 /// `mean ± half-width` of the 95 % interval

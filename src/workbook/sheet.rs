@@ -4,13 +4,15 @@ use std::cell::{Cell, RefCell};
 
 use super::answer::Unjudged;
 use super::options::Voice;
-use super::{Answer, AnswerFn, Options, Question, Value, print};
+use super::{Answer, AnswerFn, Options, print};
 use crate::doubt::Doubt;
 use crate::error::Result;
 use crate::estimator::Estimator;
 use crate::numbers::rounded;
+use crate::paths::questions::scene;
 use crate::paths::room::Scene;
 use crate::plot::{Edition, Figure};
+use crate::question::{Question, Value};
 use crate::stream::{Stream, mix};
 
 /// A question's sheet. It knows the question, its parameters, the seed and the number of draws, and an
@@ -69,7 +71,7 @@ pub(super) fn for_students(
 impl Sheet {
     /// The question's own number `name`.
     pub fn number(&self, name: &str) -> f64 {
-        self.options.number(name)
+        self.options.values.number(name)
     }
 
     /// The question's own number `name`, which must be a whole number ≥ 0.
@@ -77,17 +79,17 @@ impl Sheet {
     /// # Errors
     /// If it is anything else.
     pub fn whole_number(&self, name: &'static str) -> Result<u64> {
-        self.options.whole_number(name)
+        self.options.values.whole_number(name)
     }
 
     /// The question's own count `name`; `None` for "all".
     pub fn limit(&self, name: &str) -> Option<u32> {
-        self.options.limit(name)
+        self.options.values.limit(name)
     }
 
     /// The box room that section 4's parameters describe.
     pub fn scene(&self) -> Scene {
-        self.options.scene()
+        scene(&self.options.values)
     }
 
     /// The seed of all random numbers.
@@ -98,7 +100,7 @@ impl Sheet {
     /// Adds a row about `what`, which must not give the answer away. Its parameters are the question's own.
     pub fn row(&self, what: impl AsRef<str>) -> Row<'_> {
         let mut answer = Answer::new(self.question.id, what.as_ref());
-        for (parameter, value) in self.options.parameters() {
+        for (parameter, value) in self.options.values.parameters() {
             answer.set_parameter(&parameter.name.replace('-', "_"), value);
         }
         self.rows.borrow_mut().push(answer);

@@ -1,95 +1,8 @@
-//! Variants, which give each student numbers of their own: a name, which is any text, determines the
-//! parameters of every question, the same on every machine.
-//!
-//! A variant is fair: its numbers are short; none hides a mistake (λ = 1, p_rr = ½, a square, L_i = 1); every
-//! wrong answer differs by at least 5 % from the right one, and every classic wrong answer by at least 5 %
-//! from every other one.
+//! A class: the names of its variants, their folders, and the key of them all.
 
-use super::{Number, Options, Question};
 use crate::error::{Error, Result};
 use crate::numbers::typeset;
-use crate::stream::mix;
-
-/// The most tries to find a fair variant; a few are enough.
-const TRIES: u64 = 10_000;
-
-/// The smallest relative difference of two answers.
-const APART: f64 = 0.05;
-
-impl Options {
-    /// The parameters of a variant for these questions; options that are already set take precedence.
-    ///
-    /// ```
-    /// use unbiased::workbook::{Options, question, questions};
-    ///
-    /// let ada = Options::default().variant("Ada", questions())?;
-    /// let question = question("5.2")?;
-    /// assert_ne!(question.at(&ada)?.statement, question.at(&Options::default())?.statement);
-    /// assert_eq!(question.at(&ada)?, question.at(&Options::default().variant("Ada", questions())?)?);
-    /// # Ok::<(), unbiased::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// If the name is empty.
-    pub fn variant(
-        mut self,
-        name: &str,
-        questions: impl IntoIterator<Item = &'static Question>,
-    ) -> Result<Self> {
-        let name = name.trim();
-        if name.is_empty() {
-            return Err(Error::Usage("a variant needs a name: any text or number".into()));
-        }
-        for question in questions {
-            self.put_below(fair(question, name)?);
-        }
-        Ok(self)
-    }
-}
-
-/// The first fair choice of a question's parameters for this name.
-fn fair(question: &'static Question, name: &str) -> Result<Options> {
-    let letters = question.id.bytes().chain([0]).chain(name.bytes());
-    let seed = letters.fold(0, |seed, byte| mix(seed ^ u64::from(byte)));
-    for attempt in 0..TRIES {
-        let mut options = Options::default();
-        let mut word = mix(seed ^ mix(attempt));
-        for parameter in question.parameters.iter().filter(|of| !of.variants.is_empty()) {
-            word = mix(word);
-            // the remainder's bias is below 20/2⁶⁴, which is negligible
-            let place = (word % parameter.variants.len() as u64) as usize;
-            let value = parameter.variants.get(place).copied().unwrap_or(f64::NAN);
-            options.set(question, parameter.name, &value.to_string())?;
-        }
-        if is_fair(question, &options) {
-            return Ok(options);
-        }
-    }
-    Err(Error::Usage(format!("question {} has no fair variant for \"{name}\"", question.id)))
-}
-
-/// Whether no answer to the question can be taken for another, and all of its texts can be written.
-fn is_fair(question: &'static Question, options: &Options) -> bool {
-    question.at(options).is_ok()
-        && question.numbers.iter().all(|number| tells_apart(question, number, options))
-}
-
-fn tells_apart(question: &'static Question, number: &Number, options: &Options) -> bool {
-    let values = |formula: &str| question.evaluate(formula, options).unwrap_or_default();
-    let truths = values(number.formula);
-    // a right answer of 0 differs from every other number
-    let differ = |a: f64, b: f64| (a - b).abs() >= APART * a.abs().max(b.abs()) && a != b;
-    let wrong: Vec<_> = number.slips.iter().map(|slip| (slip, values(slip.answer))).collect();
-    let right_is_alone = wrong
-        .iter()
-        .all(|(_, values)| values.iter().all(|value| truths.iter().all(|truth| differ(*value, *truth))));
-    let classic = || wrong.iter().filter(|(slip, _)| slip.classic).enumerate();
-    right_is_alone
-        && classic().all(|(index, (_, values))| {
-            let others = classic().skip(index + 1).flat_map(|(_, (_, others))| others);
-            others.into_iter().all(|other| values.iter().all(|value| differ(*value, *other)))
-        })
-}
+use crate::question::{Number, Question, Values};
 
 /// The names of variants, one per line; blank lines are skipped.
 ///
@@ -124,9 +37,9 @@ pub(super) fn folder(name: &str) -> String {
 
 /// The numbers that a question asks for in a variant, as rows of a key: the name, the question, what is asked
 /// for, the formula and the truth.
-pub(super) fn key(name: &str, question: &'static Question, options: &Options) -> Result<Vec<Vec<String>>> {
+pub(super) fn key(name: &str, question: &'static Question, values: &Values) -> Result<Vec<Vec<String>>> {
     let row = |number: &Number| {
-        let truths = question.evaluate(number.formula, options)?;
+        let truths = question.evaluate(number.formula, values)?;
         let truth = typeset(truths.first().copied().unwrap_or(f64::NAN), 7);
         let id = format!("{}{}", question.id, number.part);
         Ok(vec![name.into(), id, number.asked(), number.formula.into(), truth])

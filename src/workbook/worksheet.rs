@@ -6,11 +6,12 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use super::options::Voice;
-use super::{AnswerFn, Appendix, Contents, Options, Question, Table};
+use super::{AnswerFn, Appendix, Contents, Options, Table};
 use super::{command_line, ended, page, print, sheet, variant};
 use crate::error::{Error, Result};
 use crate::numbers::parseable;
 use crate::plot::{Edition, write_whole};
+use crate::question::{Question, Values};
 use crate::run::Budget;
 
 /// A worksheet: questions of this crate or your own, each with the function that answers it.
@@ -93,15 +94,15 @@ impl Worksheet {
             return Err(Error::Usage(format!("the worksheet “{}” has no questions", self.title)));
         }
         let Some(mut options) = command_line::read(&questions, None)? else { return Ok(()) };
-        let mut own = Options::default();
+        let mut own = Values::default();
         for (question, name, value) in &self.given {
             own.set(question, name, value)?;
         }
-        options.put_below(own);
+        options.values.put_below(own);
         options.title.clone_from(&self.title);
         options.voice = if options.verbose { Voice::Full } else { Voice::Brief };
         for question in &questions {
-            question.at(&options)?;
+            question.at(&options.values)?;
         }
         options.with_out(|| match &options.variants {
             None => one_worksheet(&self.asked, &self.beside, &options),
@@ -159,13 +160,14 @@ fn one_for_each(file: &Path, asked: &[(&'static Question, AnswerFn)], options: &
     let names = variant::names(&bytes, &shown)?;
     let mut rows = Vec::new();
     for name in &names {
-        let mut own = options.clone().variant(name, asked.iter().map(|(question, _)| *question))?;
+        let mut own = options.clone();
+        own.values = own.values.variant(name, asked.iter().map(|(question, _)| *question))?;
         own.out = options.out.join(variant::folder(name));
         (own.voice, own.one_figure) = (Voice::Quiet, true);
         own.with_out(|| one_worksheet(asked, &[], &own))?;
         print::line(&format!("{name}: {}", own.out.display()))?;
         for (question, _) in asked {
-            rows.extend(variant::key(name, question, &own)?);
+            rows.extend(variant::key(name, question, &own.values)?);
         }
     }
     let key = Table::new("", ["name", "question", "asked for", "formula", "answer"], rows);

@@ -2,10 +2,11 @@
 
 use lexopt::{Arg, Parser};
 
-use super::super::{command_line, options, questions};
+use super::super::{command_line, questions};
 use super::draws::Source;
 use super::programs::Language;
 use crate::error::{Error, Result};
+use crate::question::parameter;
 use crate::run::Budget;
 
 /// What is to be judged or printed.
@@ -100,7 +101,7 @@ impl Arguments {
                     arguments.seed = command_line::whole(&mut line, "--seed")?;
                 }
                 _ => {
-                    options::parameter(questions(), &name, &name)?;
+                    parameter(questions(), &name, &name)?;
                     let value = command_line::text(&mut line, &format!("--{name}"))?;
                     arguments.own.push((name, value));
                 }

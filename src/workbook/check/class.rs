@@ -6,14 +6,15 @@ use std::path::Path;
 
 use serde_json::json;
 
+use super::super::Table;
 use super::super::by_hand;
 use super::super::terminal::{folded, width};
-use super::super::{Options, Table};
 use super::arguments::Arguments;
 use super::draws::{self, Source};
 use super::{Verdict, exercise};
 use crate::check::{self, Finding, Probe};
 use crate::error::{Error, Result};
+use crate::question::Values;
 
 /// The judgement of each student's answers, in the order of the files.
 pub struct Report {
@@ -228,7 +229,7 @@ fn has(question: &str, name: &str) -> bool {
     super::super::question(id).is_ok_and(|question| question.parameters.iter().any(|of| of.name == name))
 }
 
-fn judged(question: &str, text: &str, parameters: &Options, digits: Option<u32>) -> Result<Row> {
+fn judged(question: &str, text: &str, parameters: &Values, digits: Option<u32>) -> Result<Row> {
     let (judgement, ratio) = by_hand::judged(question, text, parameters, digits)?;
     let first = judgement.slips().first();
     Ok(Row {

@@ -15,13 +15,14 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
-use super::by_hand::{self, Judgement, Slip};
+use super::by_hand::{self, Judgement};
 use super::progress::watched;
 use super::terminal::{folded, stacked, width};
-use super::{Options, ended, print};
+use super::{ended, print};
 use crate::check::{self, Attempt, Candidate, Diagnosis, Exercise, Finding, Measurement, Probe, Problem};
 use crate::error::{Error, Result};
 use crate::numbers::shortened;
+use crate::question::{Slip, Values};
 use crate::run::{Budget, Run, Shortfall};
 use crate::{inversion, lambertian, paths, rectangle, roulette};
 use arguments::{Action, Arguments, HELP};
@@ -304,11 +305,11 @@ fn candidate_json(candidate: &Candidate) -> Value {
 }
 
 /// The question's own parameters: those given by name, else those of the variant, else the sheet's.
-fn parameters(question: &str, variant: Option<&str>, given: &[(String, String)]) -> Result<Options> {
+fn parameters(question: &str, variant: Option<&str>, given: &[(String, String)]) -> Result<Values> {
     // a question without a number gets its error message where it is judged
     let id = question.split('(').next().unwrap_or_default().trim();
     let question = super::question(id)?;
-    let mut parameters = Options::default();
+    let mut parameters = Values::default();
     if let Some(name) = variant {
         parameters = parameters.variant(name, [question])?;
     }

@@ -4,13 +4,14 @@
 use maud::{Markup, html};
 
 use super::super::check::{exercise, mistakes};
-use super::super::{Answer, Options, Question, command_line, print};
+use super::super::{Answer, Options, command_line, print};
 use super::text::{formula, grouped, prose};
 use super::{aligned, narrow, shown};
 use crate::check::Exercise;
 use crate::error::Result;
 use crate::numbers::{shortened, std_errors};
 use crate::plot::Edition;
+use crate::question::Question;
 
 /// The explanation of the marks.
 pub(super) fn legend(options: &Options) -> Markup {
@@ -30,7 +31,7 @@ pub(super) fn legend(options: &Options) -> Markup {
 
 pub(super) fn article(question: &'static Question, answers: &[Answer], options: &Options) -> Result<Markup> {
     let options = options.for_question(question);
-    let stated = question.at(&options)?;
+    let stated = question.at(&options.values)?;
     let formulas = stated.latex.iter().map(|latex| formula(latex)).collect::<Result<Vec<_>>>()?;
     let (command, remark) = command_line::repeating(question, answers, &options);
     let rows: Vec<&Answer> = answers.iter().filter(|answer| answer.is_a_number()).collect();

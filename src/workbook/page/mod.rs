@@ -6,9 +6,10 @@ mod text;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::{Answer, Appendix, Contents, Options, Question};
+use super::{Answer, Appendix, Contents, Options};
 use crate::error::Result;
 use crate::plot::Figure;
+use crate::question::Question;
 use text::prose;
 
 /// The questions with their answers, in order.
@@ -95,8 +96,9 @@ fn whole(class: &str, title: &str, body: &Markup) -> String {
 
 /// Links to all questions.
 fn questions(answered: &Answered, options: &Options) -> Result<Markup> {
-    let title =
-        |(question, _): &(&'static Question, Vec<Answer>)| Ok((*question, question.at(options)?.title));
+    let title = |(question, _): &(&'static Question, Vec<Answer>)| {
+        Ok((*question, question.at(&options.values)?.title))
+    };
     let titles = answered.iter().map(title).collect::<Result<Vec<_>>>()?;
     Ok(html! {
         nav aria-label="Questions" {

@@ -2,10 +2,11 @@
 
 use maud::{Markup, html};
 
-use super::super::{Answer, Options, Question};
+use super::super::{Answer, Options};
 use super::text::prose;
 use crate::error::Result;
 use crate::plot::Edition;
+use crate::question::Question;
 
 /// The number of ruled lines for an answer by hand; none if the answer is drawn.
 fn lines(id: &str) -> usize {
@@ -26,7 +27,7 @@ fn drawn_into(id: &str) -> bool {
 }
 
 pub(super) fn article(question: &'static Question, answers: &[Answer], options: &Options) -> Result<Markup> {
-    let stated = question.at(options)?;
+    let stated = question.at(&options.values)?;
     let edition = Edition::Student;
     let answers = answers.iter().filter(|answer| answer.shown_in(edition));
     Ok(html! {

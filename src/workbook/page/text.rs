@@ -165,7 +165,7 @@ mod tests {
     #[test]
     fn every_formula_becomes_mathml() {
         for question in crate::workbook::questions() {
-            for latex in &question.at(&crate::workbook::Options::default()).unwrap().latex {
+            for latex in &question.at(&crate::question::Values::default()).unwrap().latex {
                 let html = formula(latex).unwrap().into_string();
                 assert!(html.contains("<math displaystyle=\"true\">") && !html.contains("nbsp"), "{latex}");
             }

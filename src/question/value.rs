@@ -1,4 +1,4 @@
-//! The value of an option, or of a parameter of a row.
+//! The value of a parameter, of a question or a row.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use serde_json::json;
 
 use crate::numbers::{parseable, shortened};
 
-/// The value of an option, always of the kind of its default.
+/// The value of a parameter, always of the kind of its default.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Value {
     /// A number, given as `0.8` or `4/5`.
@@ -19,7 +19,7 @@ pub enum Value {
 
 impl Value {
     /// Reads a value of the same kind.
-    pub(super) fn read_alike(self, text: &str) -> Option<Self> {
+    pub(crate) fn read_alike(self, text: &str) -> Option<Self> {
         match self {
             Self::Number(_) => number(text).map(Self::Number),
             Self::Limit(_) if text == "all" => Some(Self::Limit(None)),
@@ -32,7 +32,7 @@ impl Value {
     }
 
     /// The name of this kind of value.
-    pub(super) fn kind(self) -> &'static str {
+    pub(crate) fn kind(self) -> &'static str {
         match self {
             Self::Number(_) => "a number",
             Self::Limit(_) => "a whole number or \"all\"",
@@ -41,7 +41,7 @@ impl Value {
     }
 
     /// The placeholder for it in the list of options.
-    pub(super) fn placeholder(self) -> &'static str {
+    pub(crate) fn placeholder(self) -> &'static str {
         match self {
             Self::Number(_) => "X",
             Self::Limit(_) => "K",
@@ -49,7 +49,7 @@ impl Value {
         }
     }
 
-    pub(super) fn json(self) -> serde_json::Value {
+    pub(crate) fn json(self) -> serde_json::Value {
         match self {
             Self::Number(number) => json!(number),
             Self::Limit(limit) => limit.map_or_else(|| json!("all"), |most| json!(most)),
@@ -58,7 +58,7 @@ impl Value {
     }
 
     /// Short text for people: numbers to a few digits.
-    pub(super) fn shortened(self) -> String {
+    pub(crate) fn shortened(self) -> String {
         match self {
             Self::Number(number) => shortened(number),
             Self::Limit(_) => self.to_string(),

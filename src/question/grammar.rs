@@ -7,7 +7,7 @@ use std::f64::consts::{E, LN_2, LN_10, PI};
 
 /// A number between `value - below` and `value + above`; both are 0 if it is exact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Known {
+pub(crate) struct Known {
     pub value: f64,
     pub below: f64,
     pub above: f64,
@@ -41,7 +41,7 @@ impl Known {
 
 /// A token of an answer.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Token {
+pub(crate) enum Token {
     /// A number. Unlike a letter, it must not follow a factor without a multiplication sign.
     Number(Known),
     Constant(f64),
@@ -90,7 +90,7 @@ const LONGEST: usize = 200;
 /// `letters` are the question's letters, each with all its spellings. A decimal may be rounded at its last
 /// digit, with an error of half a unit, or cut off there, with an error of up to one; numbers listed in
 /// `exact` are exact.
-pub(super) fn read(text: &str, letters: &[&[&str]], exact: &[f64]) -> Option<Vec<Token>> {
+pub(crate) fn read(text: &str, letters: &[&[&str]], exact: &[f64]) -> Option<Vec<Token>> {
     let answer = text.rsplit(['=', '≈', '~']).next()?;
     let answer = answer.trim_end_matches(|c: char| c.is_whitespace() || ".,;".contains(c));
     let chars: Vec<char> = answer.chars().take(LONGEST + 1).collect();
@@ -181,7 +181,7 @@ fn word<'c>(chars: &'c [char], letters: &[&[&str]]) -> Option<(Token, &'c [char]
 }
 
 /// The value of an answer for these values of the letters, finite or not; `None` if it cannot be understood.
-pub(super) fn evaluate(tokens: &[Token], letters: &[f64]) -> Option<Known> {
+pub(crate) fn evaluate(tokens: &[Token], letters: &[f64]) -> Option<Known> {
     let mut rest = Expression { tokens, letters };
     rest.sum().filter(|_| rest.tokens.is_empty())
 }
