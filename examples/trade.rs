@@ -383,7 +383,7 @@ fn record(answer: Answer, rival: &Measured, rank: Option<usize>) -> Answer {
         .parameter("random_numbers_per_draw", rival.random_numbers)
         .parameter("seconds_per_draw_low", low)
         .parameter("seconds_per_draw_high", high)
-        .parameter("rank", Value::Limit(rank.and_then(|rank| u32::try_from(rank).ok())));
+        .parameter("rank", rank.map_or(f64::NAN.into(), |rank| Value::Limit(u32::try_from(rank).ok())));
     for error in [1e-2, 1e-3, 1e-4, 1e-5] {
         let name = format!("seconds_to_{error:e}");
         record = record.parameter(&name, rival.seconds_to(error).seconds().unwrap_or(f64::NAN));

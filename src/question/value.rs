@@ -85,18 +85,6 @@ impl From<f64> for Value {
     }
 }
 
-impl From<Option<u32>> for Value {
-    fn from(limit: Option<u32>) -> Self {
-        Self::Limit(limit)
-    }
-}
-
-impl From<[f64; 3]> for Value {
-    fn from(point: [f64; 3]) -> Self {
-        Self::Point(point)
-    }
-}
-
 /// A number or a fraction of two: `0.8`, `4/5`.
 fn number(text: &str) -> Option<f64> {
     match text.split_once('/') {

@@ -1,7 +1,5 @@
 //! Output for programs in other languages: the probes in words and numbers, and a template program.
 
-use std::fmt::Write as _;
-
 use serde_json::{Map, Value, json};
 
 use crate::check::{Exercise, Given, Probe};
@@ -10,23 +8,18 @@ use crate::numbers::shortened;
 
 /// A question's probes: comment lines with a #, then one line for each probe, its number first.
 pub fn probes(exercise: &Exercise, question: &str) -> String {
-    let mut text = format!("# Question {question}, {}\n", exercise.name);
     let probes = exercise.probes_of(question);
-    let names = |probe: &&Probe| probe.given.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(" ");
-    for line in exercise.draw.lines() {
-        // writing to a String cannot fail
-        let _ = writeln!(text, "# {line}");
-    }
-    let _ = writeln!(text, "# The probes:");
+    let names = |probe: &&Probe| probe.given.iter().map(|(name, _)| format!(" {name}")).collect::<String>();
+    let values = |probe: &Probe| probe.given.iter().map(|(_, given)| format!(" {given}")).collect::<String>();
+    let mut lines = vec![format!("# Question {question}, {}", exercise.name)];
+    lines.extend(exercise.draw.lines().map(|line| format!("# {line}")));
+    lines.push("# The probes:".into());
     for (number, probe) in (1..).zip(&probes) {
-        let _ = writeln!(text, "#   {number}. {probe}: the truth is {}", shortened(probe.truth));
+        lines.push(format!("#   {number}. {probe}: the truth is {}", shortened(probe.truth)));
     }
-    let _ = writeln!(text, "# probe {}", probes.first().map(names).unwrap_or_default());
-    for (number, probe) in (1..).zip(&probes) {
-        let given: Vec<String> = probe.given.iter().map(|(_, given)| given.to_string()).collect();
-        let _ = writeln!(text, "{number} {}", given.join(" "));
-    }
-    text.trim_end().into()
+    lines.push(format!("# probe{}", probes.first().map(names).unwrap_or_default()));
+    lines.extend((1..).zip(&probes).map(|(number, probe)| format!("{number}{}", values(probe))));
+    lines.join("\n")
 }
 
 /// The same as JSON Lines.
@@ -78,26 +71,23 @@ pub fn template(exercise: &Exercise, question: &str, language: Language) -> Resu
         Language::Cpp => (CPP, &parts.cpp),
     };
     let given = exercise.probes.first().map_or(&[][..], |probe| &probe.given);
-    let joined = |word: &dyn Fn(usize, &str, bool) -> String, between: &str| {
-        let words =
-            (1..).zip(given).map(|(place, (name, of))| word(place, name, matches!(of, Given::Number(_))));
-        words.collect::<Vec<_>>().join(between)
-    };
-    let declared = |_: usize, name: &str, number: bool| {
-        format!("{} {name}", if number { "double" } else { "std::string" })
-    };
-    let taken = |place: usize, _: &str, number: bool| {
-        if number { format!("float(word[{place}])") } else { format!("word[{place}]") }
-    };
+    let (mut names, mut declared, mut taken, mut read) = (vec![], vec![], vec![], String::new());
+    for (place, (name, value)) in (1..).zip(given) {
+        let number = matches!(value, Given::Number(_));
+        names.push(*name);
+        declared.push(format!("{} {name}", if number { "double" } else { "std::string" }));
+        taken.push(if number { format!("float(word[{place}])") } else { format!("word[{place}]") });
+        read += &format!(" >> {name}");
+    }
     let text = frame
         .replace("QUESTION", question)
         .replace("HELPERS", part.helpers)
         .replace("ESTIMATOR", part.estimator)
-        .replace("DECLARED_HERE", &joined(&declared, "; "))
-        .replace("DECLARED", &joined(&declared, ", "))
-        .replace("READ", &joined(&|_, name, _| format!(" >> {name}"), ""))
-        .replace("GIVEN", &joined(&taken, ", "))
-        .replace("NAMES", &joined(&|_, name, _| name.into(), ", "));
+        .replace("DECLARED_HERE", &declared.join("; "))
+        .replace("DECLARED", &declared.join(", "))
+        .replace("READ", &read)
+        .replace("GIVEN", &taken.join(", "))
+        .replace("NAMES", &names.join(", "));
     Ok(text.trim_end().into())
 }
 

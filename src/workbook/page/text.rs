@@ -1,5 +1,7 @@
 //! Plain text, counts and LaTeX as HTML.
 
+use std::mem;
+
 use maud::{Markup, PreEscaped, html};
 use pulldown_latex::{Parser, RenderConfig, Storage, push_mathml};
 
@@ -59,9 +61,8 @@ pub(super) fn grouped(count: u64) -> String {
 /// A displayed formula, which may be broken at `\quad` and before each relation.
 pub(super) fn formula(latex: &str) -> Result<Markup> {
     let mut parts = Vec::new();
-    for part in pieces(latex, Cut::Quads) {
-        let pieces = pieces(&part, Cut::Relations);
-        parts.push(pieces.iter().map(|piece| mathml(piece)).collect::<Result<Vec<_>>>()?);
+    for part in pieces(latex) {
+        parts.push(part.iter().map(|piece| mathml(piece)).collect::<Result<Vec<_>>>()?);
     }
     Ok(html! {
         div.formula {
@@ -72,19 +73,14 @@ pub(super) fn formula(latex: &str) -> Result<Markup> {
     })
 }
 
-#[derive(Clone, Copy, PartialEq)]
-enum Cut {
-    Quads,
-    Relations,
-}
-
 /// Relations before which a formula may be broken. The new piece starts with `{}`, which keeps the space
 /// around the relation.
 const RELATIONS: [&str; 7] = ["=", r"\approx", r"\to", r"\xrightarrow", r"\propto", r"\le", r"\ge"];
 
-/// LaTeX split at `cut`, outside of all brackets.
-fn pieces(latex: &str, cut: Cut) -> Vec<String> {
-    let mut pieces = vec![String::new()];
+/// LaTeX split at `\quad` into parts, and these before relations into pieces, outside of all brackets.
+fn pieces(latex: &str) -> Vec<Vec<String>> {
+    let mut parts = Vec::new();
+    let (mut part, mut piece) = (Vec::new(), String::new());
     let mut depth = 0i32;
     let mut rest = latex;
     while let Some(first) = rest.chars().next() {
@@ -102,21 +98,25 @@ fn pieces(latex: &str, cut: Cut) -> Vec<String> {
             "}" | ")" | "]" | r"\}" | r"\rVert" => depth -= 1,
             _ => {}
         }
-        let outside = depth == 0;
-        if outside && cut == Cut::Quads && [r"\quad", r"\qquad"].contains(&token) {
-            pieces.push(String::new());
-        } else {
-            if outside && cut == Cut::Relations && RELATIONS.contains(&token) {
-                pieces.push("{} ".into());
+        match token {
+            r"\quad" | r"\qquad" if depth == 0 => {
+                part.push(mem::take(&mut piece));
+                parts.push(mem::take(&mut part));
             }
-            if let Some(piece) = pieces.last_mut() {
-                piece.push_str(token);
+            relation if depth == 0 && RELATIONS.contains(&relation) => {
+                part.push(mem::replace(&mut piece, format!("{{}} {relation}")));
             }
+            _ => piece += token,
         }
         rest = after;
     }
-    pieces.retain(|piece| !piece.trim().is_empty());
-    pieces
+    part.push(piece);
+    parts.push(part);
+    for part in &mut parts {
+        part.retain(|piece| !piece.trim().is_empty());
+    }
+    parts.retain(|part| !part.is_empty());
+    parts
 }
 
 fn mathml(latex: &str) -> Result<String> {
@@ -176,13 +176,9 @@ mod tests {
     #[test]
     fn formulas_break_outside_of_brackets_only() {
         assert_eq!(
-            pieces(r"P(N = k) = \frac{a = b}{c}, \qquad x \to y", Cut::Quads),
-            [r"P(N = k) = \frac{a = b}{c}, ", r" x \to y"]
+            pieces(r"P(N = k) = \frac{a = b}{c} = 1, \qquad x \to y"),
+            [&["P(N = k) ", r"{} = \frac{a = b}{c} ", "{} = 1, "][..], &[" x ", r"{} \to y"]]
         );
-        assert_eq!(
-            pieces(r"P(N = k) = \frac{a = b}{c} = 1", Cut::Relations),
-            ["P(N = k) ", r"{} = \frac{a = b}{c} ", "{} = 1"]
-        );
-        assert_eq!(pieces(r"x \leftarrow y", Cut::Relations), [r"x \leftarrow y"]);
+        assert_eq!(pieces(r"x \leftarrow y"), [[r"x \leftarrow y"]]);
     }
 }
