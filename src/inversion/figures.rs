@@ -94,58 +94,32 @@ struct Sample {
 }
 
 impl Sample {
-    fn given(&self) -> String {
-        format!("U = {}", typeset(self.u, 12))
-    }
-
     /// From u across to the curve, and down.
     fn on_cdf(&self, panel: &mut Panel) {
         let Self { u, x, place, ref label, .. } = *self;
-        let foot = panel.spot(place, 0.07);
         if place > 1.0 {
-            let [edge, _] = panel.spot(1.0, u);
-            panel.arrow(Ink::Black, [0.0, u], [edge, u]);
+            panel.arrow(Ink::Black, [0.0, u], [panel.x.high, u]);
             panel.note(Ink::Black, [1.0, 0.5], Side::Left, &format!("{label}, beyond the axis →"));
         } else {
             panel.arrow(Ink::Black, [0.0, u], [x, u]).arrow(Ink::Black, [x, u], [x, 0.0]);
             panel.marks("sample", Ink::Black, Marker::Disc, [[x, u]]);
-            if u < 0.2 {
-                // for small u both labels go beside the start of the curve
-                panel.note(Ink::Black, [0.065, 0.07], Side::Right, label);
-            } else {
-                let side = if place > 0.45 { Side::Left } else { Side::Right };
-                panel.text(Ink::Black, foot, side, label);
-            }
+            self.say(panel, panel.spot(place, 0.07), Side::Right, label);
         }
-        let (start, side) = match u {
-            u if u < 0.2 => (panel.spot(0.065, 0.17), Side::Right),
-            u if u < 0.65 => ([x, u - 0.03], Side::Right),
-            u if u <= 0.9 => ([0.0, u], Side::UpperRight),
-            _ => ([0.0, u], Side::LowerRight),
-        };
-        panel.text(Ink::Black, start, side, &self.given());
+        self.say(panel, [0.0, u], Side::UpperRight, &self.given());
     }
 
     /// From u up to the curve, and across.
     fn on_inverse(&self, panel: &mut Panel) {
         let Self { u, x, place, ref label, .. } = *self;
         if place > 1.0 {
-            let [_, top] = panel.spot(u, 1.0);
-            panel.arrow(Ink::Black, [u, 0.0], [u, top]);
-            let label = format!("{label}, beyond the axis ↑");
-            panel.note(Ink::Black, [u - 0.1, 0.93], Side::Left, &label);
+            panel.arrow(Ink::Black, [u, 0.0], [u, panel.y.high]);
+            panel.note(Ink::Black, [u - 0.1, 0.93], Side::Left, &format!("{label}, beyond the axis ↑"));
         } else {
             panel.arrow(Ink::Black, [u, 0.0], [u, x]).arrow(Ink::Black, [u, x], [0.0, x]);
             panel.marks("sample", Ink::Black, Marker::Disc, [[u, x]]);
-            let up = if u < 0.5 { place.max(0.22) } else { place };
-            panel.note(Ink::Black, [0.0, up], Side::UpperRight, label);
+            self.say(panel, panel.spot(0.0, place), Side::UpperRight, label);
         }
-        let (start, side) = match u {
-            u if u < 0.4 => (panel.spot(0.4, 0.04), Side::Right),
-            u if u < 0.55 => (panel.spot(u, 0.04), Side::Right),
-            _ => (panel.spot(u, 0.07), Side::Left),
-        };
-        panel.text(Ink::Black, start, side, &self.given());
+        self.say(panel, panel.spot(u, 0.07), Side::Left, &self.given());
     }
 
     /// The density at the sample.
@@ -155,13 +129,20 @@ impl Sample {
             panel.note(Ink::Black, [1.0, 0.5], Side::Left, &format!("{label}, beyond the axis →"));
             return;
         }
-        panel.arrow(Ink::Black, [x, 0.0], [x, p]);
-        panel.marks("sample", Ink::Black, Marker::Disc, [[x, p]]);
-        let text = format!("p(x) {}", equals(p, 3));
-        if place > 0.6 {
-            panel.note(Ink::Black, [place, 0.3], Side::Left, &text);
+        panel.arrow(Ink::Black, [x, 0.0], [x, p]).marks("sample", Ink::Black, Marker::Disc, [[x, p]]);
+        self.say(panel, [x, p], Side::UpperRight, &format!("p(x) {}", equals(p, 3)));
+    }
+
+    fn given(&self) -> String {
+        format!("U = {}", typeset(self.u, 12))
+    }
+
+    /// A text on this side of a point, or where there is room if the curves are near.
+    fn say(&self, panel: &mut Panel, at: [f64; 2], side: Side, text: &str) {
+        if (0.65..=0.89).contains(&self.u) {
+            panel.text(Ink::Black, at, side, text);
         } else {
-            panel.text(Ink::Black, [x, p], Side::UpperRight, &text);
+            panel.label(Ink::Black, at, text);
         }
     }
 }

@@ -123,12 +123,7 @@ pub fn variance_against_exponent(draws: u64, seed: u64) -> Result<Figure> {
     let exact =
         |hemisphere, a| CosinePower::new(a).map_or(f64::NAN, |light| light.variance(white, hemisphere));
     let measured = |hemisphere, exponents: &[f64]| -> Result<Vec<[f64; 2]>> {
-        let of = |&a: &f64| {
-            let light = CosinePower::new(a)?;
-            let estimator = white.estimator(move |w| light.incoming(w), hemisphere);
-            let found = estimate(&estimator, Budget::Draws(draws), seed)?;
-            Ok([a, found.variance().unwrap_or(f64::NAN)])
-        };
+        let of = |&a: &f64| Ok([a, measured_variance(CosinePower::new(a)?, hemisphere, draws, seed)?]);
         exponents.iter().map(of).collect()
     };
     let ticks = [(-1.0, "−1"), (-0.5, "−½"), (0.0, "0"), (1.0, "1"), (2.0, "2"), (3.0, "3"), (4.0, "4")];
@@ -172,6 +167,12 @@ pub fn variance_against_exponent(draws: u64, seed: u64) -> Result<Figure> {
     )
 }
 
+/// The variance of a draw for a white surface under this light.
+fn measured_variance(light: impl Light + Copy, hemisphere: Hemisphere, draws: u64, seed: u64) -> Result<f64> {
+    let estimator = Lambertian::new(1.0)?.estimator(move |w| light.incoming(w), hemisphere);
+    Ok(estimate(&estimator, Budget::Draws(draws), seed)?.variance().unwrap_or(f64::NAN))
+}
+
 /// Figure for 3.6: the variance of cosine directions over that of uniform ones, against the width of a ring
 /// of light along the horizon.
 ///
@@ -185,11 +186,7 @@ pub fn variance_against_ring(draws: u64, seed: u64) -> Result<Figure> {
     };
     let mut measured = Vec::new();
     for width in [0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.75, 0.9] {
-        let ring = RingLight::new(width)?;
-        let of = |hemisphere| {
-            let estimator = white.estimator(move |w| ring.incoming(w), hemisphere);
-            Ok(estimate(&estimator, Budget::Draws(draws), seed)?.variance().unwrap_or(f64::NAN))
-        };
+        let of = |hemisphere| measured_variance(RingLight::new(width)?, hemisphere, draws, seed);
         measured.push([width, of(Cosine)? / of(Uniform)?]);
     }
     let ticks = [(0.0, "0"), (0.25, "0.25"), (0.5, "0.5"), (0.75, "0.75"), (1.0, "1")];

@@ -171,17 +171,17 @@ mod tests {
     #[test]
     fn writers_of_one_file_do_not_disturb_each_other() {
         let folder = std::env::temp_dir().join(format!("unbiased-writers-{}", std::process::id()));
-        let figure = crate::lambertian::figures::integrand().unwrap();
-        let write = || (0..50).try_for_each(|_| figure.save(&folder).map(|_| ()));
+        let path = folder.join("file.txt");
+        let write = |byte| (0..50).try_for_each(|_| write_whole(&path, &[byte; 10_000]));
         std::thread::scope(|scope| {
-            let writers: Vec<_> = (0..8).map(|_| scope.spawn(write)).collect();
+            let writers: Vec<_> = (0..8).map(|byte| scope.spawn(move || write(byte))).collect();
             assert!(writers.into_iter().all(|writer| writer.join().unwrap().is_ok()));
         });
-        assert_eq!(fs::read_to_string(folder.join("3_2_integrand.svg")).unwrap(), figure.svg());
-        let left = fs::read_dir(&folder).unwrap().count();
-        assert_eq!(left, figure.save(&folder).unwrap().len());
+        let whole = fs::read(&path).unwrap();
+        assert!(whole.len() == 10_000 && whole.iter().all(|byte| *byte == whole[0]));
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
         // a file where the folder should be
-        let refused = figure.save(&folder.join("3_2_integrand.svg")).unwrap_err().to_string();
+        let refused = write_whole(&path.join("file.txt"), b"x").unwrap_err().to_string();
         assert!(refused.contains("could not be written"), "{refused}");
         fs::remove_dir_all(&folder).unwrap();
     }

@@ -52,8 +52,6 @@ pub(crate) enum Side {
     Above,
     /// Above and to the right of the point.
     UpperRight,
-    /// Below and to the right of the point.
-    LowerRight,
     Centre,
 }
 

@@ -281,7 +281,6 @@ fn stands((x, y): (i32, i32), side: Side) -> ((i32, i32), HPos, VPos) {
         Side::Right => ((x + gap, y), HPos::Left, VPos::Center),
         Side::Above => ((x, y - gap), HPos::Center, VPos::Bottom),
         Side::UpperRight => ((x + gap, y - gap / 2), HPos::Left, VPos::Bottom),
-        Side::LowerRight => ((x + gap, y + gap / 2), HPos::Left, VPos::Top),
         Side::Centre => ((x, y), HPos::Center, VPos::Center),
     }
 }

@@ -4,7 +4,7 @@ use unbiased::Estimate;
 use unbiased::trade::{Comparison, Measured, Nature};
 
 /// Draws of these rivals: the std error of their mean is 1 % of σ.
-pub const DRAWS: usize = 10_000;
+const DRAWS: usize = 10_000;
 
 /// A rival with these numbers.
 pub fn measured(nature: Nature, mean: f64, variance: f64, seconds: f64) -> Measured {
