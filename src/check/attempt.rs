@@ -16,7 +16,7 @@ use crate::stream::{Stream, mix};
 /// use unbiased::{Budget, check::Attempt, estimate, inversion::mistakes::Samples};
 ///
 /// let attempt = Attempt::new(|p: &Samples, rng| -(1.0 - rng.uniform()).ln() / p.rate);
-/// for probe in attempt.exercise.probes {
+/// for probe in &attempt.exercise.probes {
 ///     let estimate = estimate(&attempt.on(probe)?, Budget::Draws(10_000), 1)?;
 ///     assert!(estimate.z(probe.truth).unwrap().abs() < 5.0);
 /// }

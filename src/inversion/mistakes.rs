@@ -40,7 +40,7 @@ static PROBLEMS: [Samples; 6] = [
 impl Problem for Samples {
     fn exercise() -> &'static Exercise {
         static EXERCISE: LazyLock<Exercise> = LazyLock::new(|| {
-            Exercise::new(ABOUT, &[|p: &Samples, rng| -(1.0 - rng.uniform()).ln() / p.rate], MISTAKES)
+            Exercise::new(ABOUT, &[|p: &Samples, rng| -(1.0 - rng.uniform()).ln() / p.rate], mistakes())
         });
         &EXERCISE
     }
@@ -107,7 +107,7 @@ const ABOUT: About = About {
 };
 
 #[rustfmt::skip] // a list to be read
-const MISTAKES: &[Listed<Samples>] = &[
+fn mistakes() -> &'static [Listed<Samples>] { &[
     (["1.1", "times-rate", "multiplied by λ", "−λ ln(1 − U)", DIVIDE],
         |p, rng| -p.rate * (1.0 - rng.uniform()).ln()),
     (["1.1", "no-rate", "λ forgotten", "−ln(1 − U)", DIVIDE], |_, rng| -(1.0 - rng.uniform()).ln()),
@@ -147,7 +147,7 @@ const MISTAKES: &[Listed<Samples>] = &[
         |p, rng| (-1.0 / (1.0 - rng.uniform()).ln()).min(10.0) / p.rate),
     (["1.1", "levels", "U on 2¹⁵ levels", "U = j/2¹⁵", "take a generator of 53 bits"],
         |p, rng| -(1.0 - (rng.uniform() * 32_768.0).floor() / 32_768.0).ln() / p.rate),
-];
+] }
 
 const DIVIDE: &str = "solve 1 − e^(−λx) = u for x: divide by λ";
 const LOG: &str = "e^(−λx) is undone by the natural logarithm";

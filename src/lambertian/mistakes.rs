@@ -137,7 +137,7 @@ impl Problem for Reflection {
     fn exercise() -> &'static Exercise {
         static EXERCISE: LazyLock<Exercise> = LazyLock::new(|| {
             let by_cosine = |p: &Reflection, rng: &mut Stream| p.weighed(rng, cosine, |_| 1.0);
-            Exercise::new(ABOUT, &[by_uniform, by_cosine], MISTAKES)
+            Exercise::new(ABOUT, &[by_uniform, by_cosine], mistakes())
         });
         &EXERCISE
     }
@@ -184,7 +184,7 @@ const ABOUT: About = About {
 };
 
 #[rustfmt::skip] // a list to be read
-const MISTAKES: &[Listed<Reflection>] = &[
+fn mistakes() -> &'static [Listed<Reflection>] { &[
     (["3.4", "pdf-pi", "pdf 1/π for uniform directions", "ρ L cos θ", PDF],
         |p, rng| p.weighed(rng, uniform, |c| c)),
     (["3.4", "pdf-sphere", "pdf of the whole sphere, 1/4π", "4ρ L cos θ", PDF],
@@ -262,7 +262,7 @@ const MISTAKES: &[Listed<Reflection>] = &[
         |p, rng| p.spatial(rng, above_the_ball, |_| 1.0)),
     (["3.5", "in-the-cube", "normal + a point of the cube around it", "ρ L", BALL],
         |p, rng| p.spatial(rng, |[u, v, w]| Direction::new(2.0 * u - 1.0, 2.0 * v - 1.0, 2.0 * w), |_| 1.0)),
-];
+] }
 
 /// The direction of the normal plus a uniform point in the unit ball.
 fn above_the_ball([u, v, w]: [f64; 3]) -> Result<Direction> {

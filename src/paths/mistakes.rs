@@ -86,7 +86,7 @@ static PROBLEMS: LazyLock<Vec<LightOfPaths>> = LazyLock::new(|| {
 impl Problem for LightOfPaths {
     fn exercise() -> &'static Exercise {
         static EXERCISE: LazyLock<Exercise> =
-            LazyLock::new(|| Exercise::new(ABOUT, &[|p: &LightOfPaths, rng| RIGHT.draw(p, rng)], MISTAKES));
+            LazyLock::new(|| Exercise::new(ABOUT, &[|p: &LightOfPaths, rng| RIGHT.draw(p, rng)], mistakes()));
         &EXERCISE
     }
 
@@ -171,7 +171,7 @@ fn some_light(p: &LightOfPaths, rng: &mut Stream) -> f64 {
 }
 
 #[rustfmt::skip] // a list to be read
-const MISTAKES: &[Listed<LightOfPaths>] = &[
+fn mistakes() -> &'static [Listed<LightOfPaths>] { &[
     (["4.3", "no-area", "the light's area forgotten", "f_r L cos θ cos θ′/r²", AREA],
         |p, rng| Way { sample: |s| s.here * s.there / (s.r * s.r), ..RIGHT }.draw(p, rng)),
     (["4.3", "times-density", "multiplied by the light's density", "f_r L cos θ cos θ′/(r² A)", AREA],
@@ -250,7 +250,7 @@ const MISTAKES: &[Listed<LightOfPaths>] = &[
         |p, rng| Way { coin: Some(1.0), ..RIGHT }.draw(p, rng)),
     (["5", "roulette-twice", "roulette compensated twice", "ρ/q² a bounce", "divide by q once for each coin"],
         |p, rng| Way { coin: Some(1.0 / (GOES_ON * GOES_ON)), ..RIGHT }.draw(p, rng)),
-];
+] }
 
 const AREA: &str = "a point of the light has density 1/A: divide by it";
 const TURN: &str = "dω = cos θ′ dA/r²: sampling an area takes all three";

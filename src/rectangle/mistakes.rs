@@ -105,7 +105,7 @@ static PROBLEMS: LazyLock<Vec<Integral>> = LazyLock::new(|| {
 impl Problem for Integral {
     fn exercise() -> &'static Exercise {
         static EXERCISE: LazyLock<Exercise> = LazyLock::new(|| {
-            Exercise::new(ABOUT, &[|p: &Integral, rng| p.rectangle.area() * p.value(rng)], MISTAKES)
+            Exercise::new(ABOUT, &[|p: &Integral, rng| p.rectangle.area() * p.value(rng)], mistakes())
         });
         &EXERCISE
     }
@@ -169,7 +169,7 @@ const ABOUT: About = About {
 };
 
 #[rustfmt::skip] // a list to be read
-const MISTAKES: &[Listed<Integral>] = &[
+fn mistakes() -> &'static [Listed<Integral>] { &[
     (["2.1", "no-area", "no division by p", "f(X, Y)", DIVIDE], |p, rng| p.value(rng)),
     (["2.1", "times-p", "multiplied by p", "f(X, Y)/A", DIVIDE], |p, rng| p.times(rng, |w, h| 1.0 / (w * h))),
     (["2.1", "area-squared", "divided by p twice", "A² f(X, Y)", DIVIDE],
@@ -249,7 +249,7 @@ const MISTAKES: &[Listed<Integral>] = &[
         |p, rng| p.rectangle.area() * p.value(rng).abs()),
     (["2.1", "squared", "f squared", "A f(X, Y)²", "f² is for the variance; the mean takes f"],
         |p, rng| p.rectangle.area() * p.value(rng).powi(2)),
-];
+] }
 
 const DIVIDE: &str = "divide by p(x, y) = 1/area: multiply by the area";
 const BOTH: &str = "p(x, y) = p(x) p(y) = 1/width · 1/height";

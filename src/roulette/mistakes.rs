@@ -60,7 +60,7 @@ impl Problem for Wrapped {
                 let goes_on = rng.uniform() < p.p_rr;
                 p.played(rng, goes_on)
             };
-            Exercise::new(ABOUT_WRAPPED, &[right], WRAPPER_MISTAKES)
+            Exercise::new(ABOUT_WRAPPED, &[right], wrapper_mistakes())
         });
         &EXERCISE
     }
@@ -86,7 +86,7 @@ impl Problem for NumberOfBounces {
     fn exercise() -> &'static Exercise {
         static EXERCISE: LazyLock<Exercise> = LazyLock::new(|| {
             let right = |p: &NumberOfBounces, rng: &mut Stream| count(rng, p.p_rr);
-            Exercise::new(ABOUT_BOUNCES, &[right], BOUNCE_MISTAKES)
+            Exercise::new(ABOUT_BOUNCES, &[right], bounce_mistakes())
         });
         &EXERCISE
     }
@@ -137,7 +137,7 @@ const ABOUT_BOUNCES: About = About {
 };
 
 #[rustfmt::skip] // a list to be read
-const WRAPPER_MISTAKES: &[Listed<Wrapped>] = &[
+fn wrapper_mistakes() -> &'static [Listed<Wrapped>] { &[
     (["5", "no-compensation", "no compensation", "X or 0", COMPENSATE],
         |p, rng| p.coin(rng, p.p_rr, 1.0, 0.0)),
     (["5", "over-end", "divided by 1 − p_rr", "X/(1 − p) or 0", COMPENSATE],
@@ -176,7 +176,7 @@ const WRAPPER_MISTAKES: &[Listed<Wrapped>] = &[
             let goes_on = rng.clone().uniform() < p.p_rr;
             p.played(rng, goes_on)
         }),
-];
+] }
 
 const COMPENSATE: &str = "divide what goes on by the probability p_rr of going on";
 const END: &str = "an ended path is a draw of 0, and counts in n";
@@ -184,7 +184,7 @@ const COMPARE: &str = "go on where U < p_rr";
 const REAL: &str = "divide by the probability that the coin really had";
 
 #[rustfmt::skip] // a list to be read
-const BOUNCE_MISTAKES: &[Listed<NumberOfBounces>] = &[
+fn bounce_mistakes() -> &'static [Listed<NumberOfBounces>] { &[
     (["5.1", "coins", "coins counted instead of bounces", "N + 1",
         "N counts bounces, one less than coins: E[N] = 1/(1 − p) − 1"], |p, rng| count(rng, p.p_rr) + 1.0),
     (["5.1", "exchanged", "p and 1 − p exchanged", "P(N = k) = (1 − p)ᵏ p",
@@ -211,7 +211,7 @@ const BOUNCE_MISTAKES: &[Listed<NumberOfBounces>] = &[
         |p, rng| f64::from(u8::from(1.0 - rng.uniform() < p.p_rr))),
     (["5.1", "one-less", "one bounce too few", "max(N − 1, 0)", "the first coin that goes on is a bounce"],
         |p, rng| (count(rng, p.p_rr) - 1.0).max(0.0)),
-];
+] }
 
 const DOWN: &str = "N ≥ k exactly where U ≤ pᵏ: round down";
 const CAP: &str = "roulette needs no cap: it ends by itself";
