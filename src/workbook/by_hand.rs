@@ -195,7 +195,7 @@ pub(super) fn asked(question: &str) -> Result<(&'static Question, &'static Numbe
 
 impl Number {
     /// A description of what is asked for: "the factor c in c/n Σ L_i".
-    pub fn asked(&self) -> String {
+    pub(super) fn asked(&self) -> String {
         self.over_n.map_or(self.what.into(), |sum| format!("{} in {sum}", self.what))
     }
 }
