@@ -128,7 +128,7 @@ pub(crate) const fn classic(id: &'static str, answer: &'static str, words: &'sta
 
 impl Number {
     /// A description of what is asked for: "the factor c in c/n Σ L_i".
-    pub fn asked(&self) -> String {
+    pub(crate) fn asked(&self) -> String {
         self.over_n.map_or(self.what.into(), |sum| format!("{} in {sum}", self.what))
     }
 }

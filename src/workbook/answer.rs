@@ -137,6 +137,11 @@ impl Answer {
         self.outcome.as_ref().map(|outcome| outcome.elapsed.as_secs_f64())
     }
 
+    /// Its parameters for programs.
+    pub(super) fn parameters_json(&self) -> serde_json::Map<String, serde_json::Value> {
+        self.parameters.iter().map(|(name, value)| (name.clone(), value.json())).collect()
+    }
+
     /// The difference of estimate and truth in standard errors, if both are known.
     pub(super) fn z(&self) -> Option<f64> {
         self.estimate()?.z(self.truth?)

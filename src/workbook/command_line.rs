@@ -1,6 +1,5 @@
-//! The command line that all examples share: reading it, and writing the one that repeats an answer.
+//! Reads the command line that all examples share.
 
-use std::collections::BTreeSet;
 use std::mem;
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -9,9 +8,8 @@ use std::time::Duration;
 use lexopt::{Arg, Parser};
 
 use super::shards::Shards;
-use super::{Answer, Appendix, Options, help};
+use super::{Appendix, Options, help};
 use crate::error::{Error, Result};
-use crate::numbers::parseable;
 use crate::plot::Edition;
 use crate::question::{Given, Question, parameter};
 use crate::run::Budget;
@@ -157,42 +155,4 @@ fn edition(name: &str) -> Result<(Edition, bool)> {
         "both" => Ok((Edition::Solution, true)),
         _ => Err(Error::Usage(format!("--edition is student, solution or both, not \"{name}\""))),
     }
-}
-
-/// The command that repeats these answers, and a remark if no single command does.
-pub(super) fn repeating(
-    question: &Question,
-    answers: &[Answer],
-    options: &Options,
-) -> (String, Option<&'static str>) {
-    let mut command = format!("cargo run --release --example {} --", question.example);
-    for (parameter, value) in options.values.parameters() {
-        command += &format!(" --{} {value}", parameter.name);
-    }
-    let outcomes = answers.iter().filter_map(|answer| answer.outcome.as_ref());
-    let cut_short = outcomes.clone().any(|outcome| outcome.shortfall.is_some());
-    let mut remark = None;
-    command += &match options.budget {
-        None => String::new(),
-        Some(Budget::Draws(draws)) => format!(" --draws {draws}"),
-        Some(Budget::StdError(error) | Budget::RelativeError(error)) if !cut_short => {
-            format!(" --error {}", parseable(error))
-        }
-        // the clock decided the number of draws, and may decide otherwise next time
-        Some(_) => {
-            let draws: BTreeSet<u64> = outcomes.map(|outcome| outcome.estimate.draws()).collect();
-            match (draws.first(), draws.len()) {
-                (None, _) => String::new(),
-                (Some(draws), 1) => format!(" --draws {draws}"),
-                _ => {
-                    remark = Some(
-                        "where N is the number of draws of the row to be repeated: the clock ended each row \
-                         after a different number",
-                    );
-                    " --draws N".into()
-                }
-            }
-        }
-    };
-    (command + &format!(" --seed {}", options.seed), remark)
 }

@@ -29,8 +29,10 @@ mod options;
 mod page;
 mod print;
 mod progress;
+mod repeat;
 mod shards;
 mod sheet;
+mod table;
 mod terminal;
 mod variant;
 mod worksheet;
@@ -38,7 +40,7 @@ mod worksheet;
 use std::process::ExitCode;
 
 pub use answer::Answer;
-pub use appendix::{Appendix, Contents, Table};
+pub use appendix::{Appendix, Contents};
 pub use by_hand::{Judgement, judge_answer};
 #[cfg(feature = "notebook")]
 pub(crate) use check::told_once;
@@ -47,6 +49,7 @@ pub use options::Options;
 #[cfg(feature = "notebook")]
 pub(crate) use print::interval;
 pub use sheet::{Row, Sheet};
+pub use table::Table;
 pub use worksheet::Worksheet;
 
 use crate::error::{Error, Result};

@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 use super::answer::Unjudged;
 use super::options::Voice;
 use super::terminal::{command_lines, labelled, stacked, width};
-use super::{Answer, Appendix, Contents, Options, command_line};
+use super::{Answer, Appendix, Contents, Options, repeat};
 use crate::error::{Error, Result};
 use crate::estimate::Estimate;
 use crate::numbers::{plus_minus, rounded, shortened, std_errors};
@@ -91,7 +91,7 @@ pub(super) fn ending(question: &'static Question, answers: &[Answer], options: &
         text += &format!("\n{drawn}");
     }
     if !student {
-        let (command, remark) = command_line::repeating(question, answers, options);
+        let (command, remark) = repeat::command(question, answers, options);
         text += "\n    again\n";
         text += &command_lines(&command, width());
         if let Some(remark) = remark {
@@ -230,7 +230,7 @@ impl<'a> Line<'a> {
             question: &answer.question,
             what: for_a_student.map_or(&answer.what, |stated| &stated.title),
             kind: if answer.unjudged.is_none() { "answer" } else { "demonstration" },
-            parameters: parameters(answer),
+            parameters: answer.parameters_json(),
             truth: answer.truth.filter(|_| told),
             estimate: answer.found().filter(|_| told),
             std_error: estimate.and_then(Estimate::std_error),
@@ -241,11 +241,6 @@ impl<'a> Line<'a> {
             part: outcome.and_then(|outcome| outcome.part.as_ref()),
         }
     }
-}
-
-/// A row's parameters as JSON.
-pub(super) fn parameters(answer: &Answer) -> Map<String, Value> {
-    answer.parameters.iter().map(|(name, value)| (name.clone(), value.json())).collect()
 }
 
 fn json<'a>(mut lines: impl Iterator<Item = Line<'a>>) -> Result<()> {

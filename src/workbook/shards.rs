@@ -8,7 +8,6 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use super::Answer;
-use super::print::parameters;
 use crate::error::{Error, Result};
 use crate::run::{Outcome, Part, merge};
 
@@ -63,7 +62,7 @@ impl Shards {
         let here = Name {
             question: answer.question.clone(),
             what: answer.what.clone(),
-            parameters: parameters(answer),
+            parameters: answer.parameters_json(),
         };
         if name == here { Ok(outcome) } else { Err(of_another(&name)) }
     }

@@ -30,11 +30,8 @@ use crate::run::Budget;
 /// }
 ///
 /// fn main() -> std::process::ExitCode {
-///     let worksheet = Worksheet::new("A first sheet");
-///     question("5.2").map(|question| worksheet.question_at(question, answer, &[("p-rr", "0.3")])).map_or(
-///         std::process::ExitCode::FAILURE,
-///         |worksheet| worksheet.run(),
-///     )
+///     let Ok(bounces) = question("5.2") else { return std::process::ExitCode::FAILURE };
+///     Worksheet::new("A first sheet").question_at(bounces, answer, &[("p-rr", "0.3")]).run()
 /// }
 /// ```
 #[derive(Debug, Clone)]

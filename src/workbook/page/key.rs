@@ -4,7 +4,7 @@
 use maud::{Markup, html};
 
 use super::super::check::{exercise, mistakes};
-use super::super::{Answer, Options, command_line, print};
+use super::super::{Answer, Options, print, repeat};
 use super::text::{formula, grouped, prose};
 use super::{aligned, narrow, shown};
 use crate::check::Exercise;
@@ -33,7 +33,7 @@ pub(super) fn article(question: &'static Question, answers: &[Answer], options: 
     let options = options.for_question(question);
     let stated = question.at(&options.values)?;
     let formulas = stated.latex.iter().map(|latex| formula(latex)).collect::<Result<Vec<_>>>()?;
-    let (command, remark) = command_line::repeating(question, answers, &options);
+    let (command, remark) = repeat::command(question, answers, &options);
     let rows: Vec<&Answer> = answers.iter().filter(|answer| answer.is_a_number()).collect();
     let figures: Vec<_> = answers.iter().flat_map(|answer| answer.figures(Edition::Solution)).collect();
     // on paper one figure is enough: beside the text, or below it if it is as wide
