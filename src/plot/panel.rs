@@ -71,7 +71,8 @@ pub(crate) enum Kind {
 /// An item on a panel, in data coordinates, clipped to the axes.
 #[derive(Debug, Clone)]
 pub(crate) enum Item {
-    /// points x, y, low and high, with NaN for what a point has not; a series without a name is a legend's
+    /// points x, y, low and high, NaN where a point has none of these; a series without a name is a legend's
+    /// marker and not in the CSV
     Series {
         name: String,
         ink: Ink,
