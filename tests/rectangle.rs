@@ -82,6 +82,10 @@ fn closed_forms_agree_with_quadrature_by_another_program() {
             assert!(close(Integrand::Disc.all_pairs_variance(&r, n as u64), exact), "{n}² pairs on {r:?}");
         }
     }
+    // all of it in the disc, or none: a constant
+    for r in [rectangle([0.0, 1.0], [-1.0, 1.0]), rectangle([3.0, 4.0], [-1.0, 1.0])] {
+        assert_eq!(Integrand::Disc.all_pairs_variance(&r, 3), Some(0.0));
+    }
     let inverse = Integrand::InverseDistance;
     for (r, integral) in [
         (SHEET, 14.101977392312689),

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::exercise::{Draw, Exercise, Probe, Problem, erased};
+use super::exercise::{Draw, Exercise, Mistake, Probe, Problem, erased};
 use super::measure::Measurement;
 use crate::error::{Error, Result, require_count};
 use crate::estimate::Estimate;
@@ -78,6 +78,14 @@ impl<'a> Attempt<'a> {
             skewness = cubes.ok().filter(varied).map_or(f64::NAN, |cubes| cubes.mean());
         }
         Ok((Measurement { probe, estimate: found, skewness }, outcome))
+    }
+}
+
+impl Exercise {
+    /// A mistake with every draw multiplied by a constant, as if it were your own estimator.
+    pub fn attempt_of(&'static self, mistake: &'static Mistake, constant: f64) -> Attempt<'static> {
+        let draw = move |probe, factor: f64, rng: &mut Stream| (mistake.wrong)(probe, constant * factor, rng);
+        Attempt { exercise: self, draw: Box::new(draw) }
     }
 }
 

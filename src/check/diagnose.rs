@@ -7,7 +7,8 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use super::attempt::Attempt;
 use super::counterexample::{Counterexample, counterexample};
 use super::exercise::{Exercise, Mistake};
-use super::measure::{Measurement, Ratio};
+use super::measure::Measurement;
+use super::ratio::Ratio;
 use crate::error::{Error, Result};
 use crate::numbers::plus_minus;
 

@@ -11,8 +11,7 @@ use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
-use super::attempt::Attempt;
-use super::measure::Ratio;
+use super::ratio::Ratio;
 use crate::estimator::from_fn;
 use crate::placement::sobol;
 use crate::run::{Budget, estimate};
@@ -20,7 +19,7 @@ use crate::stream::Stream;
 
 /// A problem with known truth, for which an estimator is to be written.
 ///
-/// Your own estimator is a closure of the problem and the random numbers: see [`Attempt::new`].
+/// Your own estimator is a closure of the problem and the random numbers: see [`Attempt::new`](super::Attempt::new).
 pub trait Problem: fmt::Display + Sync + Sized + 'static {
     /// The exercise that it belongs to.
     fn exercise() -> &'static Exercise;
@@ -141,7 +140,7 @@ pub struct Mistake {
     /// How to correct it.
     pub mend: &'static str,
     index: usize,
-    wrong: Box<Draw<'static>>,
+    pub(super) wrong: Box<Draw<'static>>,
 }
 
 impl Mistake {
@@ -248,12 +247,6 @@ impl Exercise {
         let of = |mistake: &Mistake| ratio_of(&*mistake.wrong, probe, 1.0);
         let all = found.get_or_init(|| self.mistakes.par_iter().map(of).collect());
         all.get(mistake.index).copied().unwrap_or(Ratio::UNKNOWN)
-    }
-
-    /// A mistake with every draw multiplied by a constant, as if it were your own estimator.
-    pub fn attempt_of(&'static self, mistake: &'static Mistake, constant: f64) -> Attempt<'static> {
-        let draw = move |probe, factor: f64, rng: &mut Stream| (mistake.wrong)(probe, constant * factor, rng);
-        Attempt { exercise: self, draw: Box::new(draw) }
     }
 
     /// Constants times the right estimator, and times each mistake: which constant, and the mistake.

@@ -51,6 +51,12 @@ impl LightOfPaths {
     }
 }
 
+impl Way {
+    fn draw(&self, p: &LightOfPaths, rng: &mut Stream) -> f64 {
+        self.follow(&p.room, [p.first, p.last], rng)
+    }
+}
+
 static PROBLEMS: LazyLock<Vec<LightOfPaths>> = LazyLock::new(|| {
     // generic numbers, p off the axes: an area of 1 would hide a missing area, equal albedos a wrong one
     let odd = Scene {

@@ -5,7 +5,6 @@ use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
 
-use super::mistakes::LightOfPaths;
 use crate::lambertian::hemisphere::Hemisphere;
 use crate::paths::room::{BoxRoom, Face, Vertex, nearest, visible};
 use crate::stream::Stream;
@@ -92,8 +91,7 @@ pub(super) const BY_CHANCE: Way = Way { sample: |_| 0.0, chance: true, ..RIGHT }
 
 impl Way {
     /// One draw.
-    pub fn draw(&self, p: &LightOfPaths, rng: &mut Stream) -> f64 {
-        let (room, first, last) = (&p.room, p.first, p.last);
+    pub fn follow(&self, room: &BoxRoom, [first, last]: [u32; 2], rng: &mut Stream) -> f64 {
         let lit = room.scene().light_half_width > 0.0;
         let of_p = room.albedo(&room.point());
         let reused = if self.spot == Spot::Reused { [rng.uniform(), rng.uniform()] } else { [0.5; 2] };

@@ -1,7 +1,5 @@
 //! SVG documents: sizes in mm, titles and descriptions, fonts and dashes.
 
-use super::Plot;
-
 /// Units per millimetre: ten per CSS pixel of 1/96 inch.
 pub(super) const MM: f64 = 960.0 / 25.4;
 
@@ -16,8 +14,7 @@ const EDGE: &str = " stroke=\"#FFFFFF\" stroke-width=\"24\" paint-order=\"stroke
 
 /// Adds the size in mm, title, description and dash patterns, and a white outline around texts so that lines
 /// do not touch them.
-pub(super) fn of_plot(plot: &Plot, name: &str, told: [&str; 2], drawn: &str) -> String {
-    let size = [plot.width_mm, plot.height_mm];
+pub(super) fn of_plot(name: &str, size: [f64; 2], told: [&str; 2], drawn: &str) -> String {
     let body = drawn.split_once('>').map_or("", |(_, body)| body);
     let mut body = body
         .trim_end_matches("</svg>\n")

@@ -9,8 +9,9 @@ use resvg::usvg;
 #[cfg(all(feature = "pdf", not(feature = "png")))]
 use svg2pdf::usvg;
 
-use super::{Edition, slide};
+use super::{Edition, Plot, document, render};
 use crate::error::{Error, Result};
+use crate::numbers::typeset;
 
 /// A drawn figure: the picture, and the numbers in it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,6 +22,28 @@ pub struct Figure {
     pub(super) edition: Edition,
     pub(super) svg: String,
     pub(super) csv: String,
+}
+
+impl Plot {
+    /// Draws it, under a title that says in one line what it shows, with a description for readers who cannot
+    /// see it. In the student edition neither must tell the answer.
+    pub fn draw(&self, title: impl Into<String>, description: impl Into<String>) -> Result<Figure> {
+        let (title, description) = (title.into(), description.into());
+        let suffix = match self.edition {
+            Edition::Student => "_student",
+            Edition::Solution => "",
+        };
+        let name = format!("{}{suffix}", self.name);
+        let mut axes = self.panels.iter().flat_map(|panel| [&panel.x, &panel.y]);
+        if let Some(axis) = axes.find(|axis| !axis.can_be_drawn()) {
+            let [low, high] = [axis.low, axis.high].map(|end| typeset(end, 3));
+            let reason = format!("no axis can be drawn from {low} to {high} ({})", axis.name);
+            return Err(Error::Draft { what: name, reason });
+        }
+        let body = render::body(self).map_err(|reason| Error::Draft { what: name.clone(), reason })?;
+        let svg = document::of_plot(&name, [self.width_mm, self.height_mm], [&title, &description], &body);
+        Ok(Figure { svg, csv: self.csv(), title, description, edition: self.edition, name })
+    }
 }
 
 impl Figure {
@@ -52,12 +75,6 @@ impl Figure {
     /// The numbers drawn, to six significant digits, one row per point: `panel,series,x,y,low,high`.
     pub fn csv(&self) -> &str {
         &self.csv
-    }
-
-    /// The same on a slide of 16 to 9, below its title in large type: `name_slide`. It has no CSV.
-    pub fn slide(&self) -> Self {
-        let name = format!("{}_slide", self.name);
-        Self { svg: slide::svg(self, &name), csv: String::new(), name, ..self.clone() }
     }
 
     /// Writes `name.svg` and `name.csv` into `folder`, which is created if necessary (with the features `png`

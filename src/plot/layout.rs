@@ -3,9 +3,8 @@
 use std::fmt::Write as _;
 
 use super::panel::{Item, Kind};
-use super::{Edition, Figure, Ink, Panel, document, render};
-use crate::error::{Error, Result};
-use crate::numbers::{csv_field, typeset};
+use super::{Edition, Ink, Panel};
+use crate::numbers::csv_field;
 
 /// A figure before it is drawn.
 #[derive(Debug, Clone)]
@@ -27,30 +26,10 @@ impl Plot {
         Self { name, edition: Edition::Solution, width_mm, height_mm, columns: panels.len(), panels }
     }
 
-    /// Draws it, under a title that says in one line what it shows, with a description for readers who cannot
-    /// see it. In the student edition neither must tell the answer.
-    pub fn draw(&self, title: impl Into<String>, description: impl Into<String>) -> Result<Figure> {
-        let (title, description) = (title.into(), description.into());
-        let suffix = match self.edition {
-            Edition::Student => "_student",
-            Edition::Solution => "",
-        };
-        let name = format!("{}{suffix}", self.name);
-        let mut axes = self.panels.iter().flat_map(|panel| [&panel.x, &panel.y]);
-        if let Some(axis) = axes.find(|axis| !axis.can_be_drawn()) {
-            let [low, high] = [axis.low, axis.high].map(|end| typeset(end, 3));
-            let reason = format!("no axis can be drawn from {low} to {high} ({})", axis.name);
-            return Err(Error::Draft { what: name, reason });
-        }
-        let body = render::body(self).map_err(|reason| Error::Draft { what: name.clone(), reason })?;
-        let svg = document::of_plot(self, &name, [&title, &description], &body);
-        Ok(Figure { svg, csv: self.csv(), title, description, edition: self.edition, name })
-    }
-
     /// All points drawn, one row each; the columns low and high are for bands and error bars. Points that are
     /// NaN are left out. So are coloured curves in the student edition, since their numbers would tell the
     /// answer.
-    fn csv(&self) -> String {
+    pub(super) fn csv(&self) -> String {
         let mut csv = String::from("panel,series,x,y,low,high\n");
         let items = self.panels.iter().flat_map(|panel| panel.items.iter().map(move |item| (panel, item)));
         for (panel, item) in items {

@@ -10,7 +10,15 @@ const MARGIN: f64 = 24.0;
 const TYPE: std::ops::RangeInclusive<u8> = 16..=28;
 const LINES: usize = 3;
 
-pub(super) fn svg(figure: &Figure, name: &str) -> String {
+impl Figure {
+    /// The same on a slide of 16 to 9, below its title in large type: `name_slide`. It has no CSV.
+    pub fn slide(&self) -> Self {
+        let name = format!("{}_slide", self.name);
+        Self { svg: svg(self, &name), csv: String::new(), name, ..self.clone() }
+    }
+}
+
+fn svg(figure: &Figure, name: &str) -> String {
     let folded = |size: u8| (size, fold(&figure.title, SIZE[0] - 2.0 * MARGIN, f64::from(size)));
     let fits = TYPE.rev().map(folded).find(|(_, lines)| lines.len() <= LINES);
     let (size, lines) = fits.unwrap_or_else(|| folded(*TYPE.start()));

@@ -15,6 +15,7 @@ use crate::error::{Error, Result, require, require_count, takes};
 use crate::estimate::Estimate;
 use crate::estimator::Estimator;
 
+mod blocks;
 mod part;
 mod pilot;
 mod work;

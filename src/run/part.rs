@@ -4,10 +4,9 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::work::block_size;
+use super::blocks::{Blocks, block_size};
 use super::{Cost, Outcome};
 use crate::error::{Error, Result};
-use crate::estimate::Estimate;
 
 /// One shard of a run: the estimates of its blocks, to the last bit, so that [`merge`] can put the whole run
 /// together from shards of any machines.
@@ -77,59 +76,4 @@ pub fn merge(parts: &[Part]) -> Result<Outcome> {
     }
     let elapsed = Duration::try_from_secs_f64(seconds).unwrap_or_default();
     Ok(Outcome { estimate, seed: *seed, cost, elapsed, pilot: None, shortfall: None, part: None })
-}
-
-/// Consecutive blocks, as the fewest nodes that cover them in a binary tree over all block numbers: node j of
-/// level l is the estimate of blocks j·2ˡ to (j + 1)·2ˡ − 1, merged from its two halves. So the sums of a run
-/// are rounded alike, however its blocks are cut into shards.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Blocks {
-    first: u64,
-    end: u64,
-    nodes: Vec<(u32, Estimate)>,
-}
-
-impl Blocks {
-    /// No blocks yet; `first` will be the first one.
-    pub fn from(first: u64) -> Self {
-        Self { first, end: first, nodes: Vec::new() }
-    }
-
-    /// Adds the next block.
-    pub fn push(&mut self, estimate: &Estimate) {
-        self.push_node(0, *estimate);
-    }
-
-    fn push_node(&mut self, mut level: u32, mut estimate: Estimate) {
-        // an odd index: the previous node is the left half of their common parent
-        let begins = |end: u64, level: u32| end.checked_shr(level).unwrap_or(0);
-        let mut index = begins(self.end, level);
-        while let Some((_, before)) = self.nodes.pop_if(|(other, _)| *other == level && index % 2 == 1) {
-            estimate = merged(before, &estimate);
-            (level, index) = (level + 1, index / 2);
-        }
-        self.nodes.push((level, estimate));
-        self.end = (index + 1).checked_shl(level).unwrap_or(u64::MAX);
-    }
-
-    fn append(&mut self, next: &Self) {
-        for (level, estimate) in &next.nodes {
-            self.push_node(*level, *estimate);
-        }
-    }
-
-    /// The estimate of all its blocks.
-    pub fn estimate(&self) -> Estimate {
-        let last_first = self.nodes.iter().rev().map(|(_, estimate)| *estimate);
-        last_first.reduce(|right, left| merged(left, &right)).unwrap_or_default()
-    }
-
-    pub fn draws(&self) -> u64 {
-        self.nodes.iter().fold(0, |draws, (_, estimate)| draws.saturating_add(estimate.draws()))
-    }
-}
-
-fn merged(mut left: Estimate, right: &Estimate) -> Estimate {
-    left.merge(right);
-    left
 }

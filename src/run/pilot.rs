@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use super::part::Blocks;
-use super::work::{LARGEST_BLOCK, Watch, Work, Workers, one_block};
+use super::blocks::{Blocks, LARGEST_BLOCK};
+use super::work::{Watch, Work, Workers, one_block};
 use super::{Cost, Shortfall};
 use crate::error::{Error, Result};
 use crate::estimate::Estimate;

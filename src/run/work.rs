@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use super::part::Blocks;
+use super::blocks::{Blocks, block_size};
 use super::{Clock, Cost, Run};
 use crate::error::{Error, Result, require_count};
 use crate::estimate::{Estimate, SLICE};
@@ -15,12 +15,6 @@ use crate::stream::Stream;
 
 /// The largest number of threads.
 const MOST_THREADS: usize = 1024;
-
-/// The fewest blocks of a run (if it has as many draws): enough to keep all threads busy to the end.
-const BLOCKS: u64 = 32;
-
-/// The most draws in a block.
-pub const LARGEST_BLOCK: u64 = 1 << 14;
 
 /// Blocks between two reports of progress: at first, and at most.
 const FIRST_BATCH: u64 = 64;
@@ -105,13 +99,6 @@ impl<E: Estimator + ?Sized> Work<'_, E> {
         }
         Ok(())
     }
-}
-
-/// Draws in each block of a run of `draws`: a power of two, so that runs of similar length share their
-/// streams.
-pub fn block_size(draws: u64) -> u64 {
-    let size = (draws / BLOCKS).clamp(1, LARGEST_BLOCK);
-    1 << size.ilog2()
 }
 
 impl Cost {

@@ -2,14 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use super::{Measured, Rival, Trade};
+use super::{COUNT, Measured, Rival, Trade};
 use crate::error::Result;
 use crate::estimate::{Estimate, SLICE};
 use crate::estimator::Estimator;
 use crate::run::{Cost, walk_block};
-
-/// Batches per rival: 4k + 1, so that the median and the quartiles of their times are single batches.
-pub(super) const COUNT: u64 = 17;
 
 /// Warming up takes the time of this many batches: 1 + ½ + ¼ + … < 2 to find the number of draws, and two
 /// more to repeat the last one.

@@ -1,7 +1,6 @@
 //! The measurements of one rival, and what follows from them.
 
-use super::REAL;
-use super::batches::COUNT;
+use super::{COUNT, REAL};
 use crate::doubt::Doubt;
 use crate::estimate::Estimate;
 

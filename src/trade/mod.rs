@@ -29,6 +29,9 @@ use batches::Batches;
 /// 370 that are 0 does.
 const REAL: f64 = 3.0;
 
+/// Batches per rival: 4k + 1, so that the median and the quartiles of their times are single batches.
+const COUNT: u64 = 17;
+
 /// One of the estimators that are compared.
 pub struct Rival<'a> {
     name: String,
@@ -169,7 +172,7 @@ impl Trade {
         for rival in rivals {
             runs.push(Batches::warm_up(&*rival.estimator, self.seed, self.seconds)?);
         }
-        for batch in 0..batches::COUNT {
+        for batch in 0..COUNT {
             for (rival, run) in rivals.iter().zip(&mut runs) {
                 run.take(&*rival.estimator, self.seed, batch)?;
             }
