@@ -88,6 +88,8 @@
 //! - **variant**: a worksheet with other parameters, drawn from a seed, for each student.
 //! - **z**: (mean − truth)/(standard error); near a standard normal number if the estimator is unbiased.
 
+#![warn(clippy::missing_errors_doc)]
+
 // each module uses only those above it
 pub mod error;
 mod numbers;

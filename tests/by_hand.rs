@@ -2,6 +2,7 @@
 //! parameters?
 //!
 //! Nothing is random but the parameters and the texts; nothing is judged by chance.
+#![cfg(feature = "workbook")]
 
 mod common;
 

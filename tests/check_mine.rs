@@ -3,6 +3,7 @@
 //!
 //! Nothing here is left to chance: estimators have pinned seeds, and draws from elsewhere are samples by
 //! inversion on a regular grid, or of generators with a seed.
+#![cfg(feature = "workbook")]
 
 mod common;
 

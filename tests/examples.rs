@@ -1,5 +1,6 @@
 //! Every example runs, prints JSON that parses, and agrees with its truths; the worksheet's pages hold all of
 //! it, and the student's edition none of the answers.
+#![cfg(feature = "workbook")]
 
 mod common;
 

@@ -316,6 +316,20 @@ fn nothing_panics_on_purpose() {
     }
 }
 
+/// Docs are read top down: what it is, an example, then when it fails.
+#[test]
+fn examples_stand_before_errors() {
+    for source in sources("src") {
+        let mut errors = false;
+        for (number, line) in source.lines() {
+            let doc = line.trim_start().strip_prefix("///");
+            errors = doc.is_some_and(|doc| errors || doc.trim() == "# Errors");
+            let example = errors && doc.is_some_and(|doc| doc.trim().starts_with("```"));
+            assert!(!example, "{}:{number}: move the example before # Errors", source.path);
+        }
+    }
+}
+
 /// What is public: `module::Item`, `module::Type::method`. Fields and variants come with their types.
 ///
 /// Modules that are not public do not hide what their parent gives again, so an item of theirs counts if its

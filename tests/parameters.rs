@@ -2,6 +2,7 @@
 //! and wrong answers.
 //!
 //! Nothing here is random.
+#![cfg(feature = "workbook")]
 
 use std::collections::BTreeSet;
 

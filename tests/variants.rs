@@ -1,6 +1,7 @@
 //! Are a thousand variants fair, and the same everywhere?
 //!
 //! Nothing here is random: names choose the numbers.
+#![cfg(feature = "workbook")]
 
 use std::collections::BTreeSet;
 

@@ -19,7 +19,8 @@ use crate::stream::Stream;
 
 /// A problem with known truth, for which an estimator is to be written.
 ///
-/// Your own estimator is a closure of the problem and the random numbers: see [`Attempt::new`](super::Attempt::new).
+/// Your own estimator is a closure of the problem and the random numbers: see
+/// [`Attempt::new`](super::Attempt::new).
 pub trait Problem: fmt::Display + Sync + Sized + 'static {
     /// The exercise that it belongs to.
     fn exercise() -> &'static Exercise;
