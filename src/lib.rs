@@ -34,16 +34,16 @@
 //! | 2 Unbiased estimators | [`rectangle`] | independent, paired, jittered and Sobol points on a rectangle |
 //! | 3 The diffuse cube | [`lambertian`] | directions, a Lambertian surface, lights with exact variances |
 //! | 4 Paths | [`paths`], [`paths::room`] | the scene, its closed forms, and paths through it |
-//! | 5 Russian roulette | [`roulette`] | bounce counts, the wrapper X_rr, and the variance and work of
-//! roulette |
+//! | 5 Russian roulette | [`roulette`] | bounce counts, the wrapper X_rr, variance and work |
 //!
 //! [`check`] tests whether an estimator is unbiased and, if not, names the classic mistakes that it looks
 //! like; try your own in `examples/check_mine.rs`. [`trade`] measures which estimator is the most accurate
 //! for a given computing time.
 //!
 //! These modules build on [`estimator`], [`placement`], [`run`], [`estimate`](mod@estimate), [`stream`] and
-//! [`error`]. With the feature `workbook` (on by default) there are also `plot` and `workbook`. The files in
-//! `examples/` are the worked answers, one file per question.
+//! [`error`]. With the feature `workbook` (on by default) there are also `plot`, `question` (what a question
+//! is) and `workbook` (what its example prints). The files in `examples/` are the worked answers, one file
+//! per question.
 //!
 //! # Conventions
 //!

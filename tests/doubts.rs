@@ -36,6 +36,10 @@ fn a_doubt_says_when_the_variance_may_be_infinite() {
         let paths = Paths::new(BoxRoom::new(scene).unwrap(), bounces, way.0, way.1).unwrap();
         let doubt = paths.doubt().map(|doubt| doubt.to_string());
         assert_eq!(doubt.as_deref(), told, "{bounces:?} {way:?} in {scene:?}");
+        // single precision changes no law
+        if let Ok(single) = paths.in_f32() {
+            assert_eq!(single.doubt(), paths.doubt(), "{bounces:?} {way:?} in {scene:?}");
+        }
     };
     // q against ρ² and (4/3)ρ² of the larger albedo, whichever it is
     for scene in [with(0.5, 0.8, 0.5), with(0.8, 0.1, 0.5)] {

@@ -8,9 +8,10 @@ use unbiased::inversion::mistakes::Samples;
 use unbiased::lambertian::hemisphere::Hemisphere;
 use unbiased::lambertian::mistakes::Reflection;
 use unbiased::paths::mistakes::LightOfPaths;
+use unbiased::paths::room::Scene;
 use unbiased::rectangle::mistakes::Integral;
 use unbiased::roulette::mistakes::{NumberOfBounces, Wrapped};
-use unbiased::{Error, Estimator, from_fn};
+use unbiased::{Error, Estimator, Stream, from_fn};
 
 use crate::right::shared_sample;
 use crate::{DRAWS, diagnosed, gallery, is_faint, names};
@@ -184,6 +185,52 @@ fn a_constant_times_a_mistake_is_named() {
     );
     assert!(f64::from(named) >= 0.9 * f64::from(runs));
     assert!(missed.len() as f64 <= 0.02 * f64::from(runs));
+}
+
+/// A parameter too much, alone or beside a mistake: the probes differ in it.
+#[test]
+fn a_parameter_too_much_is_named() {
+    let of_paths = |factor: fn(&Scene) -> f64| {
+        Attempt::new(move |p: &LightOfPaths, rng| factor(p.room.scene()) * shared_sample(p, rng))
+    };
+    let of_area = |factor: fn([f64; 2]) -> f64| {
+        Attempt::new(move |p: &Integral, rng| {
+            let ([x, y], [[a, b], [c, d]]) = (p.rectangle.sample(rng), p.ends());
+            factor([b - a, d - c]) * p.rectangle.area() * p.f(x, y)
+        })
+    };
+    let of_count = |factor: fn(f64) -> f64| {
+        Attempt::new(move |p: &NumberOfBounces, rng| {
+            factor(p.p_rr) * ((1.0 - rng.uniform()).ln() / p.p_rr.ln()).floor()
+        })
+    };
+    let wrapped = |factor: fn(f64) -> f64| {
+        Attempt::new(
+            move |p: &Wrapped, rng| {
+                if rng.uniform() < p.p_rr { factor(p.p_rr) * p.x(rng) / p.p_rr } else { 0.0 }
+            },
+        )
+    };
+    let cosine =
+        |p: &Reflection, rng: &mut Stream| p.albedo.powi(3) * p.light(&Hemisphere::Cosine.sample(rng));
+    for (symbol, attempt) in [
+        ("λ", Attempt::new(|_: &Samples, rng| -(1.0 - rng.uniform()).log10())),
+        ("the area", of_area(|[w, h]| (w * h).powi(2))),
+        ("the width", of_area(|[w, _]| w)),
+        ("the height", of_area(|[_, h]| h)),
+        ("ρ", Attempt::new(cosine)),
+        ("ρ_wall", of_paths(|scene| scene.wall_albedo)),
+        ("ρ_cube", of_paths(|scene| scene.cube_albedo)),
+        ("1 − ρ_wall", of_paths(|scene| 1.0 - scene.wall_albedo)),
+        ("p_rr", of_count(|p| p * p)),
+        ("1 − p_rr", of_count(|p| (1.0 - p).powi(2))),
+        ("p_rr", wrapped(|p| p.powi(3))),
+        ("1 − p_rr", wrapped(|p| (1.0 - p).powi(2))),
+    ] {
+        let named = names(&diagnosed(&attempt, DRAWS, 3100));
+        let told = format!("a factor of {symbol} too much");
+        assert!(named.iter().any(|name| name.starts_with(&told)), "{symbol}: {named:?}");
+    }
 }
 
 #[test]
