@@ -2,6 +2,7 @@
 
 use unbiased::check::{Exercise, Problem};
 use unbiased::inversion::mistakes::Samples;
+use unbiased::lambertian::hemisphere::Direction;
 use unbiased::lambertian::mistakes::Reflection;
 use unbiased::paths::mistakes::LightOfPaths;
 use unbiased::rectangle::mistakes::Integral;
@@ -58,6 +59,17 @@ fn the_sheets_own_case_is_the_first_probe_of_every_question() {
         assert!(places.iter().copied().eq(0..probes.len()));
     }
     assert!(exercise("1.3").is_none());
+}
+
+/// Light comes from the sky alone: a direction below the horizon brings none, whatever the sky.
+#[test]
+fn no_light_comes_from_below() {
+    for problem in Reflection::all() {
+        for cos in [-1.0, -0.5, -1e-300] {
+            assert_eq!(problem.light(&Direction::polar(cos, 1.0).unwrap()), 0.0, "{problem}");
+        }
+        assert!((1..100).any(|k| problem.light(&Direction::polar(0.01 * f64::from(k), 1.0).unwrap()) > 0.0));
+    }
 }
 
 /// The probes' truths, by pencil.
