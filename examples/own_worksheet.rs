@@ -65,6 +65,7 @@ static NEEDLE: Question = Question {
     wrong: &[],
     on_the_original: None,
     example: "own_worksheet",
+    lines: 5,
     parameters: &[LENGTH],
     derived: &[],
 };
@@ -129,6 +130,7 @@ static DISC: Question = Question {
     wrong: &[],
     on_the_original: None,
     example: "own_worksheet",
+    lines: 5,
     parameters: &[ANGLE],
     derived: &[SIN_SQUARED],
 };

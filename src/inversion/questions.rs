@@ -75,6 +75,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
              It also writes F⁻¹(x); the argument of an inverse cdf is a probability, u.",
         ),
         example: "q1_1_exponential",
+        lines: 5,
         parameters: &[RATE],
         derived: &[Letter { value: |_| Ok(0.75), ..U }],
     },
@@ -122,6 +123,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
             "F and p take x, F⁻¹ takes u: the inverse is drawn against an axis of its own here.",
         ),
         example: "q1_2_one_sample",
+        lines: 2,
         parameters: &[
             RATE,
             Parameter {
@@ -156,6 +158,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
              is u.",
         ),
         example: "q1_3_axes",
+        lines: 2,
         parameters: &[RATE],
         derived: &[],
     },

@@ -115,6 +115,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
              of 1 m on the floor, a square light of «2s» m in the middle of the ceiling.",
         ),
         example: "q4_1_two_bounces",
+        lines: 0,
         parameters: &[WALL_ALBEDO, CUBE_ALBEDO, RADIANCE, LIGHT_HALF_WIDTH, POINT],
         derived: &[],
     },
@@ -146,6 +147,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
         ],
         on_the_original: None,
         example: "q4_2_three_bounces",
+        lines: 0,
         parameters: &[WALL_ALBEDO, CUBE_ALBEDO, RADIANCE, LIGHT_HALF_WIDTH, POINT],
         derived: &[],
     },
@@ -198,6 +200,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
              radiance, not all of it.",
         ),
         example: "q4_3_paths",
+        lines: 4,
         parameters: &[
             WALL_ALBEDO,
             CUBE_ALBEDO,

@@ -45,6 +45,8 @@ pub struct Question {
     pub on_the_original: Option<&'static str>,
     /// The file in `examples/`, without `.rs`.
     pub example: &'static str,
+    /// Ruled lines for an answer on paper; 0 if it is drawn into the figure, which is then as large as fits.
+    pub lines: usize,
     /// Its parameters.
     pub parameters: &'static [Parameter],
     /// Further letters of its formulas, computed from the parameters.

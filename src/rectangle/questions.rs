@@ -104,6 +104,7 @@ pub(crate) const QUESTIONS: &[Question] = &[Question {
          unbiased estimate needs a finite E|f|, an error bar a finite E f².",
     ),
     example: "q2_1_square",
+    lines: 5,
     parameters: &[
         end("x-low", -2.0, "where the rectangle begins in x", LOW_ENDS, X_LOW),
         end("x-high", 2.0, "where it ends in x, above --x-low", HIGH_ENDS, X_HIGH),

@@ -135,6 +135,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
              libraries (mean 1/p − 1): check which one a library means.",
         ),
         example: "q5_1_bounces",
+        lines: 6,
         parameters: &[P_RR],
         derived: &[],
     },
@@ -153,6 +154,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
         wrong: &[],
         on_the_original: None,
         example: "q5_2_few_bounces",
+        lines: 2,
         parameters: &[Parameter { default: Value::Number(0.2), ..P_RR }, ALBEDO, VISIBILITY],
         derived: &[],
     },
@@ -187,6 +189,7 @@ pub(crate) const QUESTIONS: &[Question] = &[
         ],
         on_the_original: None,
         example: "q5_3_more_bounces",
+        lines: 3,
         parameters: &[
             Parameter { help: "the continuation probability q of the paths, in (0, 1)", ..P_RR },
             ALBEDO,
