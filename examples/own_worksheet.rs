@@ -27,8 +27,8 @@ const LENGTH: Parameter = Parameter {
     variants: &[0.3, 0.4, 0.6, 0.7, 0.75, 0.9],
     letter: Some(Letter {
         names: &["l"],
-        value: |options| {
-            let l = options.number("length");
+        value: |values| {
+            let l = values.number("length");
             let outside = Error::Parameter { name: "the length l", value: l, allowed: "in (0, 1]" };
             if l > 0.0 && l <= 1.0 { Ok(l) } else { Err(outside) }
         },
@@ -84,8 +84,8 @@ const ANGLE: Parameter = Parameter {
     variants: &[15.0, 20.0, 25.0, 40.0, 50.0, 70.0],
     letter: Some(Letter {
         names: &["α", "alpha"],
-        value: |options| {
-            let angle = options.number("angle");
+        value: |values| {
+            let angle = values.number("angle");
             let outside = Error::Parameter { name: "the angle α", value: angle, allowed: "in (0, 90]" };
             if angle > 0.0 && angle <= 90.0 { Ok(angle) } else { Err(outside) }
         },
@@ -96,7 +96,7 @@ const ANGLE: Parameter = Parameter {
 /// sin² α as a letter, since formulas cannot contain a sine.
 const SIN_SQUARED: Letter = Letter {
     names: &["s"],
-    value: |options| Ok(options.number("angle").to_radians().sin().powi(2)),
+    value: |values| Ok(values.number("angle").to_radians().sin().powi(2)),
     generic: 0.43,
 };
 

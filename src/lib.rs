@@ -41,9 +41,9 @@
 //! for a given computing time.
 //!
 //! These modules build on [`estimator`], [`placement`], [`run`], [`estimate`](mod@estimate), [`stream`] and
-//! [`error`]. With the feature `workbook` (on by default) there are also `plot`, `question` (what a question
-//! is) and `workbook` (what its example prints). The files in `examples/` are the worked answers, one file
-//! per question.
+//! [`error`]. With the feature `workbook` (on by default) there are also `plot` (figures), `question` (a
+//! question's texts, parameters and numbers) and `workbook` (the examples' command line, worksheets and keys).
+//! The files in `examples/` are the worked answers, one file per question.
 //!
 //! # Conventions
 //!

@@ -1,4 +1,4 @@
-//! Means as parts of what they should be.
+//! Ratios of means to the truth.
 
 use crate::estimate::Estimate;
 

@@ -24,7 +24,7 @@ pub struct Report {
     pub truth: f64,
     /// The estimate from all draws.
     pub estimate: Estimate,
-    /// The tolerance |δμ|: a smaller difference counts as none.
+    /// The tolerance, |δμ| unless the truth is 0: a smaller difference counts as none.
     pub tolerance: f64,
     /// The probability of calling a right estimator biased.
     pub alpha: f64,

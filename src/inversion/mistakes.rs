@@ -81,7 +81,7 @@ impl Problem for Samples {
 }
 
 impl Statistic {
-    /// For programs, and for people.
+    /// Its name for programs, and its name for people.
     fn names(self) -> [&'static str; 2] {
         match self {
             Self::Mean => ["x", "X"],

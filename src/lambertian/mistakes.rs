@@ -40,7 +40,7 @@ pub enum Sky {
 }
 
 impl Sky {
-    /// For programs, and for people.
+    /// Its name for programs, and its name for people.
     fn names(self) -> [&'static str; 2] {
         match self {
             Self::Even => ["one", "1"],

@@ -35,7 +35,7 @@ pub struct Sample {
 }
 
 impl Paths {
-    /// One path with its vertices, for drawing: the one that [`draw`](Estimator::draw) follows with the same
+    /// One path with its vertices, for drawing: the one that [`draw`](crate::Estimator::draw) follows with the same
     /// stream.
     ///
     /// ```

@@ -47,7 +47,7 @@ pub(super) fn document(
     )
 }
 
-/// A line of a title about x, on the line at y, in type of `size`.
+/// A line of a title, centred at x, with its baseline at y, in type of `size`.
 pub(super) fn title_line(x: f64, y: f64, size: u8, text: &str) -> String {
     let text = escape(text);
     format!(

@@ -6,7 +6,7 @@ use super::{Figure, document};
 /// 13.33 × 7.5 inches in CSS pixels.
 const SIZE: [f64; 2] = [1280.0, 720.0];
 const MARGIN: f64 = 24.0;
-/// Pixels of the title's type, from the largest that is tried to the smallest.
+/// The sizes of the title's type in pixels; the largest that fits is taken.
 const TYPE: std::ops::RangeInclusive<u8> = 16..=28;
 const LINES: usize = 3;
 

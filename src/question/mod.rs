@@ -23,7 +23,7 @@ use crate::error::Result;
 /// letters, written as answers are; [`at`](Self::at) replaces it by its value at the parameters.
 #[derive(Debug, Clone, Copy)]
 pub struct Question {
-    /// The worksheet's number.
+    /// Its number on the worksheet: "5.1".
     pub id: &'static str,
     /// A few words that do not give the answer away.
     pub title: &'static str,

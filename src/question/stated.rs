@@ -26,7 +26,7 @@ pub struct Stated {
 }
 
 impl Question {
-    /// Its texts at its parameters, as given, else the sheet's.
+    /// Its texts, with the given values of its parameters, or else their defaults.
     ///
     /// ```
     /// use unbiased::question::Values;

@@ -23,7 +23,7 @@ pub(crate) struct Given {
     pub value: Value,
 }
 
-/// What the option `name` of one of these questions sets.
+/// The parameter `name` of one of these questions; an error names `option`.
 pub(crate) fn parameter<'q>(
     questions: impl IntoIterator<Item = &'q Question>,
     name: &str,
@@ -35,7 +35,7 @@ pub(crate) fn parameter<'q>(
 }
 
 impl Parameter {
-    /// A value given for it.
+    /// Reads a value of this parameter.
     pub(crate) fn read(&self, given: &str) -> Result<Value> {
         let kind = self.default.kind();
         let unread = || Error::Usage(format!("--{} takes {kind}, not \"{given}\"", self.name));
@@ -47,7 +47,7 @@ impl Values {
     /// Sets the question's parameter `name` to a value as the command line takes it: "0.8", "4/5".
     ///
     /// # Errors
-    /// If the question has no such parameter, or it does not take that.
+    /// If the question has no such parameter, or `given` is not a value of its kind.
     pub fn set(&mut self, question: &Question, name: &str, given: &str) -> Result<()> {
         let parameter = parameter([question], name, name)?;
         let value = parameter.read(given)?;
@@ -55,7 +55,7 @@ impl Values {
         Ok(())
     }
 
-    /// Sets a value that was read.
+    /// Adds a value; it overrides earlier ones.
     pub(crate) fn give(&mut self, given: Given) {
         self.given.push(given);
     }
@@ -86,8 +86,9 @@ impl Values {
         parameters.filter_map(|parameter| Some((parameter, self.value(parameter.name)?)))
     }
 
-    /// The value of the question's parameter `name`, a number: as given, else its default. NaN if the
-    /// question has no such parameter.
+    /// The number `name`, a parameter of the question that these values are for: as given, else its default.
+    /// It is for [`Letter::value`](super::Letter::value), which gets such values: NaN for values that are for
+    /// no question, and if the question has no such parameter.
     pub fn number(&self, name: &str) -> f64 {
         match self.value(name) {
             Some(Value::Number(number)) => number,

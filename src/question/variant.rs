@@ -30,7 +30,7 @@ impl Values {
     /// ```
     ///
     /// # Errors
-    /// If the name is empty.
+    /// If the name is empty, or one of the questions has no fair variant for it.
     pub fn variant(
         mut self,
         name: &str,
@@ -68,7 +68,8 @@ fn fair(question: &'static Question, name: &str) -> Result<Values> {
     Err(Error::Usage(format!("question {} has no fair variant for \"{name}\"", question.id)))
 }
 
-/// Whether no answer to the question can be taken for another, and all of its texts can be written.
+/// Whether no wrong answer can be taken for the right one, nor one classic wrong answer for another, and all
+/// texts can be written.
 fn is_fair(question: &'static Question, values: &Values) -> bool {
     question.at(values).is_ok() && question.numbers.iter().all(|number| tells_apart(question, number, values))
 }

@@ -77,7 +77,7 @@ impl Integral {
 }
 
 impl Surface {
-    /// For programs, and for people.
+    /// Its name for programs, and its name for people.
     fn names(self) -> [&'static str; 2] {
         match self {
             Self::One => ["one", "1"],

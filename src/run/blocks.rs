@@ -29,7 +29,7 @@ pub(super) struct Blocks {
 
 impl Blocks {
     /// No blocks yet; `first` will be the first one.
-    pub fn from(first: u64) -> Self {
+    pub fn starting_at(first: u64) -> Self {
         Self { first, end: first, nodes: Vec::new() }
     }
 

@@ -1,4 +1,4 @@
-//! Shards of a run, and merging them: the blocks' estimates along a fixed binary tree.
+//! Shards of a run, and merging them into the whole run.
 
 use std::time::Duration;
 
@@ -56,7 +56,7 @@ pub fn merge(parts: &[Part]) -> Result<Outcome> {
     }
     let mut parts: Vec<&Part> = parts.iter().collect();
     parts.sort_by_key(|part| (part.blocks.first, part.blocks.end));
-    let (mut blocks, mut cost, mut seconds) = (Blocks::from(0), Cost::default(), 0.0);
+    let (mut blocks, mut cost, mut seconds) = (Blocks::starting_at(0), Cost::default(), 0.0);
     for part in parts {
         if part.blocks.first < blocks.end {
             return refused(format!("block {} is there twice", part.blocks.first));

@@ -52,14 +52,15 @@ impl<E: Estimator + ?Sized> Work<'_, E> {
         Ok(((draws_per_second * left) as u64).max(2))
     }
 
-    /// The pilot run: doubles its draws, from streams of its own, until mean and std error are `enough` or
-    /// the limit on draws is reached; without any variance, until [`CONSTANT_WORK`].
+    /// The pilot run: doubles its draws, from streams of its own, until it has [`PILOT_WORK`] and its mean and
+    /// std error are `enough`, or, while all draws are equal, until [`CONSTANT_WORK`]. The limit on draws, or a
+    /// quarter of the run's `max_time`, ends it earlier.
     pub fn pilot(&mut self, enough: impl Fn(f64, f64) -> bool) -> Result<Estimate> {
         let mut pilot = Estimate::new();
         let limit = self.run.max_draws.max(2);
         for stage in 0.. {
             let draws = pilot.draws().max(FIRST_STAGE).min(limit - pilot.draws());
-            let mut more = Blocks::from(0);
+            let mut more = Blocks::starting_at(0);
             let seed = mix(self.run.seed ^ PILOT_SALT.wrapping_add(stage));
             self.extend(&mut more, seed, 0..u64::MAX, draws)?;
             pilot.merge(&more.estimate());

@@ -59,7 +59,7 @@ impl<E: Estimator + ?Sized> Work<'_, E> {
         let [k, of] = self.run.shard.unwrap_or([1, 1]).map(u128::from);
         let all = u128::from(draws.div_ceil(block_size(draws)));
         let [mut next, end] = [k - 1, k].map(|k| (all * k / of) as u64);
-        let (mut blocks, mut batch) = (Blocks::from(next), FIRST_BATCH);
+        let (mut blocks, mut batch) = (Blocks::starting_at(next), FIRST_BATCH);
         while next < end {
             let start = self.watch.elapsed();
             let until = next.saturating_add(batch).min(end);

@@ -79,7 +79,7 @@ impl Comparison {
     }
 
     /// When the most efficient unbiased rival overtakes a biased one, after T = (σ_r² t_r − σ² t)/β² seconds;
-    /// None for a rival that is not biased.
+    /// `None` if this rival is not biased, or none is unbiased.
     pub(super) fn crossing(&self, rival: &Measured) -> Option<Crossing> {
         let ranking = self.ranking();
         let best = ranking.iter().map(|place| place.rival).find(|best| best.nature == Nature::Unbiased)?;

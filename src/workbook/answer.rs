@@ -24,10 +24,10 @@ pub(super) enum Unjudged {
 
 /// One number that answers (part of) a question, or a sentence where it has none.
 ///
-/// A [`Sheet`](super::Sheet) fills its own; an [`Appendix`](super::Appendix) gives some to programs.
+/// A [`Sheet`](super::Sheet) makes its own; an [`Appendix`](super::Appendix) lists some for `--json`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// The sheet's number, with the part of the question: "5.1(ii)".
+    /// The question's number, and its part: "5.1(ii)".
     pub(super) question: String,
     pub(super) what: String,
     pub(super) unjudged: Option<Unjudged>,

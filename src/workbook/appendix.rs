@@ -25,7 +25,7 @@ pub struct Appendix {
 
 impl Appendix {
     /// Refuses an option of the questions' examples that makes no sense for it.
-    pub(super) fn take(&self, option: &str) -> Result<()> {
+    pub(super) fn check_option(&self, option: &str) -> Result<()> {
         let refused = match option {
             "draws" | "error" | "threads" | "edition" | "hint" => true,
             "seconds" => self.seconds.is_none(),

@@ -26,7 +26,7 @@ pub(super) fn read(questions: &[&'static Question], appendix: Option<&Appendix>)
             other => return Err(usage(other.unexpected())),
         };
         if let Some(appendix) = appendix {
-            appendix.take(&name)?;
+            appendix.check_option(&name)?;
         }
         match name.as_str() {
             "help" => {

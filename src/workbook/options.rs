@@ -43,7 +43,7 @@ pub struct Options {
     pub(super) variants: Option<PathBuf>,
     /// The worksheet's title.
     pub(super) title: String,
-    /// The questions' parameters.
+    /// The values of the questions' parameters.
     pub(super) values: Values,
 }
 

@@ -69,12 +69,12 @@ pub(super) fn for_students(
 }
 
 impl Sheet {
-    /// The question's own number `name`.
+    /// The value of the question's parameter `name`, a number; NaN if it has none of that name.
     pub fn number(&self, name: &str) -> f64 {
         self.options.values.number(name)
     }
 
-    /// The question's own number `name`, which must be a whole number ≥ 0.
+    /// The same, which must be a whole number ≥ 0.
     ///
     /// # Errors
     /// If it is anything else.
@@ -82,7 +82,7 @@ impl Sheet {
         self.options.values.whole_number(name)
     }
 
-    /// The question's own count `name`; `None` for "all".
+    /// The value of the question's parameter `name`, a count; `None` for "all".
     pub fn limit(&self, name: &str) -> Option<u32> {
         self.options.values.limit(name)
     }

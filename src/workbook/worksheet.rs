@@ -60,9 +60,9 @@ impl Worksheet {
         mut self,
         question: &'static Question,
         answer: AnswerFn,
-        numbers: &[(&'static str, &'static str)],
+        values: &[(&'static str, &'static str)],
     ) -> Self {
-        self.given.extend(numbers.iter().map(|(name, value)| (question, *name, *value)));
+        self.given.extend(values.iter().map(|(name, value)| (question, *name, *value)));
         self.question(question, answer)
     }
 
@@ -73,7 +73,8 @@ impl Worksheet {
     }
 
     /// The worksheet's `main`: reads the command line, answers all questions, and writes `solution.html`,
-    /// with the appendices as separate pages, or `student.html`, or both.
+    /// with the appendices as separate pages, or `student.html`, or both. With `--variants FILE` each name in
+    /// the file gets a folder with its own pages, without appendices, and `key.csv` has everyone's answers.
     ///
     /// With `--seconds`, each of the many estimators in an appendix gets at most a tenth of a second.
     pub fn run(self) -> ExitCode {

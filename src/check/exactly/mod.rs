@@ -59,10 +59,10 @@ pub struct Exact {
 /// ```
 ///
 /// # Errors
-/// If a draw takes more numbers than that, or is not finite; if X jumps along a line or surface that is
-/// aslant to the axes; if mean or variance is infinite, or depends on single steps of 2⁻⁵³; if the size of X,
-/// its square or its variance is outside `f64`'s range; if the two rules disagree; or if it would take more
-/// than 3·10⁷ draws.
+/// If `random_numbers` is not 1, 2 or 3; if a draw takes more numbers than that, or is not finite; if X jumps
+/// along a line or surface that is oblique to the axes; if mean or variance is infinite, or depends on single
+/// steps of 2⁻⁵³; if the size of X, its square or its variance is outside `f64`'s range; if the two rules
+/// disagree, or the Sobol points disagree with them; or if it would take more than 3·10⁷ draws.
 pub fn exactly(estimator: &(impl Estimator + ?Sized), random_numbers: usize) -> Result<Exact> {
     let count = random_numbers as u64;
     require_count("the random numbers of a draw", count, (1..=3).contains(&count), "1, 2 or 3")?;
@@ -75,7 +75,7 @@ pub fn exactly(estimator: &(impl Estimator + ?Sized), random_numbers: usize) -> 
     let looked_at = std::mem::replace(&mut sweep.range, NOTHING);
     let (sums, _) = sweep.integrate(Line::Axis(0), false)?;
     let integrated = std::mem::replace(&mut sweep.range, looked_at);
-    let scattered = sweep.scattered()?;
+    let scattered = sweep.sobol_means()?;
     let mean = sweep.mean(&sums)?;
     sweep.compare(&sums, integrated, scattered)?;
     Ok(Exact { mean, variance: sweep.variance(&sums)? })
@@ -84,15 +84,21 @@ pub fn exactly(estimator: &(impl Estimator + ?Sized), random_numbers: usize) -> 
 /// The accuracy promised.
 const ACCURACY: f64 = 1e-9;
 
-/// Independently scrambled Sobol sets, points of each, points computed at a time, and std errors allowed.
+/// Independently scrambled Sobol sets.
 const SCRAMBLES: usize = 16;
+
+/// The points of each set.
 const POINTS: u32 = 1 << 14;
+
+/// Points computed at a time.
 const TOGETHER: usize = 1 << 10;
+
+/// By how many std errors means may differ.
 const STD_ERRORS: f64 = 10.0;
 
 impl<E: Estimator + ?Sized> Sweep<'_, E> {
     /// Means of Y and Y² and their std errors, from independently scrambled Sobol sets.
-    fn scattered(&mut self) -> Result<[[f64; 2]; 2]> {
+    fn sobol_means(&mut self) -> Result<[[f64; 2]; 2]> {
         let mut means = [[0.0; SCRAMBLES]; 2];
         for scramble in 0..SCRAMBLES {
             let seed = Stream::new(1, scramble as u64).next_u64();
@@ -102,7 +108,7 @@ impl<E: Estimator + ?Sized> Sweep<'_, E> {
                 self.estimator.fill(&mut points, &mut draws);
                 for x in draws {
                     if !x.is_finite() {
-                        return Err(refused(format!("it is {x} at a scattered point")));
+                        return Err(refused(format!("it is {x} at a Sobol point")));
                     }
                     let there = self.sums_of(x)?.moments;
                     for (means, value) in means.iter_mut().zip(there) {
@@ -124,7 +130,7 @@ impl<E: Estimator + ?Sized> Sweep<'_, E> {
         accurate("mean", sums.errors[0], sums.steps[0], ACCURACY * sums.size)?;
         let mean = self.unit * (self.middle + sums.moments[0]);
         let size = self.unit * sums.size;
-        if !(is_kept(size) && mean.is_finite()) {
+        if !(is_zero_or_normal(size) && mean.is_finite()) {
             return Err(refused("its mean is beyond f64".into()));
         }
         // if the first draws were all 0 the unit is meaningless, and squares may have underflowed
@@ -142,7 +148,7 @@ impl<E: Estimator + ?Sized> Sweep<'_, E> {
         accurate("variance", errors, sums.steps[1], ACCURACY * variance + noise)?;
         let variance = if variance > noise { variance } else { 0.0 };
         let scaled = variance * self.unit * self.unit;
-        if is_kept(scaled) && (scaled > 0.0 || variance == 0.0) {
+        if is_zero_or_normal(scaled) && (scaled > 0.0 || variance == 0.0) {
             Ok(scaled)
         } else {
             Err(refused("its variance is beyond f64".into()))
@@ -166,7 +172,7 @@ impl<E: Estimator + ?Sized> Sweep<'_, E> {
         if agrees {
             Ok(())
         } else {
-            Err(refused("its values at scattered points do not agree with the quadrature".into()))
+            Err(refused("its values at scrambled Sobol points do not agree with the quadrature".into()))
         }
     }
 }
@@ -177,13 +183,14 @@ fn accurate(what: &str, errors: f64, steps: f64, allowed: f64) -> Result<()> {
     if errors + steps <= allowed {
         Ok(())
     } else if steps <= 0.5 * allowed {
-        Err(refused(format!("its {what} is known to {errors:.0e} only, where {allowed:.0e} is asked for")))
+        Err(refused(format!("its {what} is known only to {errors:.0e}; {allowed:.0e} is needed")))
     } else {
         let steps = "single steps 2⁻⁵³ of the random numbers";
-        Err(refused(format!("its {what} depends on {steps}: its variance is infinite or as good as")))
+        Err(refused(format!("its {what} depends on {steps}: its variance is infinite, or nearly so")))
     }
 }
 
-fn is_kept(value: f64) -> bool {
+/// Whether it neither over- nor underflowed.
+fn is_zero_or_normal(value: f64) -> bool {
     value == 0.0 || value.is_normal()
 }

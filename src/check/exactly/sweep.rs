@@ -24,7 +24,7 @@ const FIRST: usize = 255;
 /// Evaluations after which the integration is given up: about a second.
 const MOST: u64 = 30_000_000;
 
-/// After this many jumps at different places it is assumed that one jump is aslant to the axes.
+/// After this many jumps at different places it is assumed that one jump is oblique to the axes.
 const JUMPS: usize = 256;
 
 /// A line of integration: along one axis, with earlier axes fixed and later ones integrated, or along a
@@ -306,7 +306,7 @@ impl<'a, E: Estimator + ?Sized> Sweep<'a, E> {
         if !new.is_empty() {
             self.jumps += new.len();
             if self.jumps > JUMPS {
-                return Err(refused("it jumps aslant to the axes, or at too many places".into()));
+                return Err(refused("it jumps at an angle to the axes, or at too many places".into()));
             }
             *cuts = merged(std::mem::take(cuts), new.into_iter().flatten());
         }

@@ -323,7 +323,7 @@ fn number_of(probe: &Probe, probes: &[&Probe]) -> usize {
     1 + probes.iter().position(|other| std::ptr::eq(*other, probe)).unwrap_or(0)
 }
 
-/// The other probes whose truth draws fit that do not fit their own probe's.
+/// The other probes whose truths the draws fit, if they do not fit their own probe's.
 fn fitting_elsewhere(of: &Measurement, probes: &[&'static Probe]) -> Vec<&'static Probe> {
     let fits = |probe: &&'static Probe| !of.is_right() && Measurement { probe, ..*of }.is_right();
     probes.iter().copied().filter(fits).collect()
