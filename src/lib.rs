@@ -42,8 +42,8 @@
 //!
 //! These modules build on [`estimator`], [`placement`], [`run`], [`estimate`](mod@estimate), [`stream`] and
 //! [`error`]. With the feature `workbook` (on by default) there are also `plot` (figures), `question` (a
-//! question's texts, parameters and numbers) and `workbook` (the examples' command line, worksheets and keys).
-//! The files in `examples/` are the worked answers, one file per question.
+//! question's texts, parameters and numbers) and `workbook` (the examples' command line, worksheets and
+//! keys). The files in `examples/` are the worked answers, one file per question.
 //!
 //! # Conventions
 //!

@@ -158,6 +158,23 @@ fn a_vertex_has_the_albedo_and_the_emission_of_its_face() {
     assert_eq!(dark.light_area(), 0.0);
 }
 
+/// From low on a wall the cube hides no light, however wide: a line from there over its top meets the ceiling
+/// more than 4 m away.
+#[test]
+fn the_cube_hides_nothing_from_the_walls() {
+    for h in [0.5, 1.5, 1.99] {
+        for z in [0.05, 0.5, 0.95] {
+            for point in [[2.0, 0.3, z], [-2.0, -1.1, z], [0.4, 2.0, z], [1.3, -2.0, z]] {
+                let scene = Scene { light_half_width: h, point, ..Scene::default() };
+                let room = BoxRoom::new(scene).unwrap();
+                let part = common::part_of_the_sky(&room.point(), h);
+                let off = (room.one_bounce() / (0.5 * 10.0) - part).abs();
+                assert!(off <= 4e-15, "{point:?}, h = {h}: {off:e} beside {part}");
+            }
+        }
+    }
+}
+
 /// The part of the light that the cube leaves free, on the floor beside it: against n² points of the light. A
 /// row of them meets the edge of the convex shadow twice, and is off by half a cell each time: together 1/n
 /// of the light, times how much brighter than the mean a point may be, less than 1.5.

@@ -35,8 +35,8 @@ pub struct Sample {
 }
 
 impl Paths {
-    /// One path with its vertices, for drawing: the one that [`draw`](crate::Estimator::draw) follows with the same
-    /// stream.
+    /// One path with its vertices, for drawing: the one that [`draw`](crate::Estimator::draw) follows with
+    /// the same stream.
     ///
     /// ```
     /// # use unbiased::paths::room::{BoxRoom, Scene};

@@ -1,8 +1,9 @@
 //! Figures as SVG, with their numbers as CSV.
 //!
 //! Every figure has a title and a description for readers who cannot see it, is 85, 150 or 170 mm wide (a
-//! slide is 13.33 inches), can be read in grey, and has the same bytes on every run. If a question asks the student to mark or draw
-//! something there are two editions: [`Edition::Student`] has the same canvas and axes without the answer.
+//! slide is 13.33 inches), can be read in grey, and has the same bytes on every run. If a question asks the
+//! student to mark or draw something there are two editions: [`Edition::Student`] has the same canvas and
+//! axes without the answer.
 
 mod axis;
 mod document;

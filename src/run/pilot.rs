@@ -52,9 +52,9 @@ impl<E: Estimator + ?Sized> Work<'_, E> {
         Ok(((draws_per_second * left) as u64).max(2))
     }
 
-    /// The pilot run: doubles its draws, from streams of its own, until it has [`PILOT_WORK`] and its mean and
-    /// std error are `enough`, or, while all draws are equal, until [`CONSTANT_WORK`]. The limit on draws, or a
-    /// quarter of the run's `max_time`, ends it earlier.
+    /// The pilot run: doubles its draws, from streams of its own, until it has [`PILOT_WORK`] and its mean
+    /// and std error are `enough`, or, while all draws are equal, until [`CONSTANT_WORK`]. The limit on
+    /// draws, or a quarter of the run's `max_time`, ends it earlier.
     pub fn pilot(&mut self, enough: impl Fn(f64, f64) -> bool) -> Result<Estimate> {
         let mut pilot = Estimate::new();
         let limit = self.run.max_draws.max(2);
