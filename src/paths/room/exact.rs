@@ -79,7 +79,8 @@ pub(crate) fn over_the_walls(room: &BoxRoom, f: impl Fn(&Vertex, DVec3) -> f64) 
         let middle = p.dot(along);
         for (side, end) in [(-w, -w), (-w, w), (w, -w), (w, w)] {
             for z in cells(beside.max(NEGLIGIBLE), high, low) {
-                let strip = beside.max(high - z[1]).max(NEGLIGIBLE / (z[1] - z[0]));
+                let height = z[1] - z[0];
+                let strip = beside.max(high - z[1]).max(NEGLIGIBLE / height);
                 for [from, to] in cells(strip, end, middle) {
                     let corner = |a: f64, z: f64| along * a + across * side + DVec3::Z * z;
                     let (a, b, c) = (corner(from, z[0]), corner(to, z[0]), corner(from, z[1]));
@@ -87,7 +88,7 @@ pub(crate) fn over_the_walls(room: &BoxRoom, f: impl Fn(&Vertex, DVec3) -> f64) 
                         for [t, wt] in GAUSS.iter() {
                             let point = a + (b - a) * *s + (c - a) * *t;
                             let Ok(p_j) = Vertex::at(point.to_array()) else { continue };
-                            let (way, area) = (point - p, (to - from) * (z[1] - z[0]));
+                            let (way, area) = (point - p, (to - from) * height);
                             let r = way.length();
                             let solid = area * p_j.normal().dot(-way) / (r * r * r);
                             sum += ws * wt * solid * f(&p_j, way / r);
