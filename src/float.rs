@@ -187,6 +187,9 @@ mod tests {
         assert_eq!((w(1.0) + w(2f64.powi(-100)) - w(1.0)).round(), 2f64.powi(-100));
         let e = f64::EPSILON;
         assert_eq!((w(1.0 + e).squared() - w(1.0) - w(2.0 * e)).round(), e * e);
+        // what the low halves lose
+        let [low, lower] = [-60, -120].map(|power| w(2f64.powi(power)));
+        assert_eq!(((w(1.0) + low) + (w(-1.0) + lower) - low).round(), 2f64.powi(-120));
         assert!((w(1.0) / w(3.0) * w(3.0) - w(1.0)).round().abs() <= 2f64.powi(-104));
         for x in [2.0, 3.0, 1e-301, 7e300, tiny] {
             assert!(((w(x).sqrt().squared() - w(x)) / w(x)).round().abs() <= 2f64.powi(-102), "{x}");
